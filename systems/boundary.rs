@@ -3,6 +3,7 @@
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
+use super::rows::Rows;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
@@ -43,6 +44,10 @@ impl NodeSystem for Prescribed {
     );
     /// Rows of A and b.
     type Prepared = [[f64; 4]; 3];
+
+    fn rows(&self) -> Rows<'_> {
+        Rows::List(&self.rows)
+    }
 
     fn prepare(&self, before: &Before<'_>) -> [[f64; 4]; 3] {
         [0, 1, 2].map(|axis| before.signals.values()[self.signal + axis])

@@ -2,6 +2,7 @@
 
 mod contacts;
 
+use super::repeat::Repeat;
 use super::system::{Phase, System};
 use crate::backend::cpu::{Foreseen, IntegrationCoefficients};
 use crate::components::*;
@@ -21,7 +22,7 @@ use glam::{DMat3, DVec3};
 ///
 /// It runs on the host on both backends: on a GPU the columns that it needs come and go in every step.
 pub fn system() -> System {
-    System::built_in(
+    let system = System::built_in(
         "free_tool",
         Phase::Contact,
         "moves free tools, and keeps nodes out of them",
@@ -31,8 +32,8 @@ pub fn system() -> System {
             Some(if count == 1 { "1 free tool".to_string() } else { format!("{count} free tools") })
         },
         free_tool,
-    )
-    .with_state::<FreeMotions>()
+    );
+    System { repeats: |_| Some(contacts::sweeps()), ..system.with_state::<FreeMotions>() }
 }
 
 /// How far a tool may go in a step, in edges: beyond, it may be through a surface before anybody sees it.

@@ -4,6 +4,7 @@ mod kernels;
 mod work;
 
 use super::node_slices::{BodyColumns, elements_stay};
+use super::repeat::Repeat;
 use super::system::{Phase, System};
 use crate::backend::cpu::IntegrationCoefficients;
 use crate::components::*;
@@ -30,7 +31,17 @@ pub fn system() -> System {
         glue,
     );
     // ties whose tissue may go are looked after on the host
-    System { device_when: nothing_goes, shared_only: on_surfaces, ..system.on_device(kernels::kernels) }
+    System {
+        device_when: nothing_goes,
+        shared_only: on_surfaces,
+        repeats: sweeps,
+        ..system.on_device(kernels::kernels)
+    }
+}
+
+/// What corrects the forces.
+fn sweeps(world: &World) -> Option<Repeat> {
+    Repeat::times(world.get_resource::<Glue>()?.sweeps, &["forces of ties", "what they do to nodes"])
 }
 
 /// Whether no tissue of what is tied can go.

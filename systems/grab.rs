@@ -2,6 +2,7 @@
 
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, MiddleOfStep, NodesAtRest};
+use super::rows::Rows;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
@@ -29,6 +30,10 @@ impl NodeSystem for Grabs {
     type Columns = (&'static Displacement, &'static DisplacementIncrement, &'static Mass, &'static mut ExternalForce);
     /// What turns the last step into a velocity (1/s).
     type Prepared = f64;
+
+    fn rows(&self) -> Rows<'_> {
+        Rows::Changing
+    }
 
     fn prepare(&self, before: &Before<'_>) -> f64 {
         before.clock.rate()

@@ -3,6 +3,7 @@
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
+use super::rows::Rows;
 use super::system::{Phase, System};
 use super::tool_contact::{ToolNodes, tool_stage};
 use crate::backend::Buffers;
@@ -61,6 +62,10 @@ impl NodeSystem for Grasps {
         (&'static mut ExternalForce, &'static mut ToolHold),
     );
     type Prepared = GraspStep;
+
+    fn rows(&self) -> Rows<'_> {
+        Rows::List(&self.rows)
+    }
 
     fn prepare(&self, before: &Before<'_>) -> GraspStep {
         let values = before.signals.values();

@@ -56,6 +56,8 @@ mod own_load;
 mod patch_pass;
 mod pressure;
 mod registry;
+mod repeat;
+mod rows;
 mod suction;
 mod suction_mouth;
 mod surface_contact;
@@ -89,6 +91,8 @@ pub(crate) use patch_pass::patch_pass;
 #[doc(hidden)]
 pub use pressure::Pressure;
 pub use registry::Registry;
+pub use repeat::Repeat;
+pub use rows::{RowSet, Rows};
 pub(crate) use surface_contact::find_surfaces;
 #[doc(hidden)]
 pub use surface_contact::{Meeting, SurfaceContacts, SurfaceMemory};

@@ -3,6 +3,7 @@
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
+use super::rows::Rows;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
@@ -38,6 +39,10 @@ pub fn system() -> System {
 impl NodeSystem for NodalForce {
     type Columns = (&'static Mass, &'static mut ExternalForce);
     type Prepared = [f64; 4];
+
+    fn rows(&self) -> Rows<'_> {
+        Rows::List(&self.on.rows)
+    }
 
     fn prepare(&self, before: &Before<'_>) -> [f64; 4] {
         before.signals.values()[self.signal]

@@ -3,6 +3,7 @@
 
 use super::node_shares::{ShareOf, WantedShare, share_of, wanted_shares};
 use super::node_views::{Before, ForceSlopes, MiddleOfStep, NodesAtRest};
+use super::rows::{RowSet, Rows, row_set};
 use super::system::HostSystem;
 use crate::backend::cpu::{Cpu, NodeColumns, NodeShare};
 use crate::components::*;
@@ -41,6 +42,12 @@ pub trait NodeSystem: Component {
     /// system's function is called for no others.
     fn choose(&self, _: &NodesAtRest<'_>) -> Option<Vec<u32>> {
         None
+    }
+
+    /// For which rows of the body's nodes it is, where it does not [choose](Self::choose) them: what the plan of a step
+    /// says of it (`sinew explain`). A system that goes through a list of its own in [`act`](Self::act) gives the list.
+    fn rows(&self) -> Rows<'_> {
+        Rows::All
     }
 
     /// Finds out what this step needs, before any node of the body moves.
@@ -163,6 +170,7 @@ pub struct NodeRows {
     wanted_shares: fn(Option<OfSystem>, f64, &mut World) -> Vec<WantedShare>,
     give_share: fn(&mut World, Entity, NodeShare),
     share_of: fn(&mut World, Entity) -> Option<NodeShare>,
+    row_set: fn(Option<OfSystem>, &mut World) -> RowSet,
     /// Only what is for this one of several systems calls for it.
     of: Option<OfSystem>,
     /// See [`NodeSystem::SUMS_FORCES`].
@@ -200,6 +208,7 @@ impl NodeRows {
                 world.entity_mut(caller).insert(ShareOf::<S>::new(share));
             },
             share_of: share_of::<S>,
+            row_set: row_set::<S>,
             of: None,
             sums_forces: S::SUMS_FORCES,
             moves_nodes: S::MOVES_NODES,
@@ -253,6 +262,11 @@ impl NodeRows {
     /// What it has of a body for itself, if it has something.
     pub(crate) fn share_of(&self, body: Entity, world: &mut World) -> Option<NodeShare> {
         (self.share_of)(world, body)
+    }
+
+    /// For which nodes it is.
+    pub(crate) fn row_set(&self, world: &mut World) -> RowSet {
+        (self.row_set)(self.of, world)
     }
 
     /// A system that does nothing and touches what this one does: for the order in which systems may run.

@@ -5,6 +5,7 @@
 use super::node_system::{NodeRows, NodeSystem};
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
+use super::rows::Rows;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
@@ -60,6 +61,10 @@ impl NodeSystem for OwnLoad {
         &'static mut ExternalForce,
     );
     type Prepared = InStep;
+
+    fn rows(&self) -> Rows<'_> {
+        self.rows.as_deref().map_or(Rows::All, Rows::List)
+    }
 
     fn prepare(&self, before: &Before<'_>) -> InStep {
         let Before { clock, signals, .. } = before;

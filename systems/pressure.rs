@@ -3,6 +3,7 @@
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
+use super::rows::Rows;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
@@ -45,6 +46,10 @@ impl NodeSystem for Pressure {
     type Columns = (&'static RestPosition, &'static Displacement, &'static mut ExternalForce);
     /// The pressure (Pa).
     type Prepared = f64;
+
+    fn rows(&self) -> Rows<'_> {
+        Rows::List(&self.faces.rows)
+    }
 
     fn prepare(&self, before: &Before<'_>) -> f64 {
         find_areas(&self.faces, before.rest, before.displacement);

@@ -4,6 +4,7 @@
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::pressure::{find_areas, push};
+use super::rows::Rows;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
@@ -32,6 +33,10 @@ impl NodeSystem for Suction {
     type Columns = (&'static RestPosition, &'static Displacement, &'static mut ExternalForce);
     /// The pressure (Pa).
     type Prepared = f64;
+
+    fn rows(&self) -> Rows<'_> {
+        Rows::Changing
+    }
 
     fn prepare(&self, before: &Before<'_>) -> f64 {
         find_areas(&self.active, before.rest, before.displacement);

@@ -12,6 +12,7 @@ mod motion;
 mod survey;
 
 use super::node_slices::BodyColumns;
+use super::repeat::Repeat;
 use super::system::{Phase, System};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
@@ -49,6 +50,7 @@ pub fn system() -> System {
         // and points of faces and edges there, too
         device_when: |world| surfaces_stay(world) && nodes_meet_alone(world),
         before_steps: Some(device::before_steps),
+        repeats: sweeps,
         ..system.on_device(kernels::kernels)
     }
 }
@@ -57,6 +59,13 @@ pub fn system() -> System {
 fn surfaces_stay(world: &World) -> bool {
     let contacts = world.get_resource::<SurfaceContacts>();
     contacts.is_some_and(|contacts| contacts.bodies.iter().all(|&body| world.get::<SurfaceRows>(body).is_some()))
+}
+
+/// What corrects the forces.
+fn sweeps(world: &World) -> Option<Repeat> {
+    let contacts = world.get_resource::<SurfaceContacts>()?;
+    let what = ["normal forces", "what they do to nodes", "friction", "what it does to nodes"];
+    Repeat::times(contacts.sweeps, if contacts.has_friction() { &what } else { &what[..2] })
 }
 
 /// Whether the points that meet others are all nodes.
@@ -214,6 +223,11 @@ impl SurfaceContacts {
     pub(crate) fn has_face_points(&self, body: usize) -> bool {
         let count = self.bodies.len();
         self.meetings[body * count..(body + 1) * count].iter().flatten().any(|meeting| meeting.faces)
+    }
+
+    /// Whether there is any friction.
+    fn has_friction(&self) -> bool {
+        self.meetings.iter().flatten().any(|meeting| meeting.friction != [0.0; 2])
     }
 
     /// The largest thickness (m).

@@ -3,6 +3,7 @@
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
+use super::rows::Rows;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
@@ -31,6 +32,10 @@ const SLACK: f64 = 2.25;
 impl NodeSystem for Sutured {
     type Columns = (&'static SutureForce, &'static mut ExternalForce);
     type Prepared = ();
+
+    fn rows(&self) -> Rows<'_> {
+        Rows::List(&self.rows)
+    }
 
     fn prepare(&self, _: &Before<'_>) {}
 

@@ -4,6 +4,7 @@ use super::host_forces::SlopesOf;
 use super::node_pass::{NodePass, node_pass};
 use super::node_stages::derived_stages;
 use super::node_system::{NodeRows, NodeSystem};
+use super::repeat::Repeat;
 use crate::backend::Buffers;
 use crate::backend::kernel::Fragment;
 use crate::backend::kernel::Kernel;
@@ -129,6 +130,8 @@ pub struct System {
     pub(crate) before_steps: Option<BeforeSteps>,
     /// Whether, in a world, it concerns only nodes that are inside no patch.
     pub(crate) shared_only: fn(&World) -> bool,
+    /// What of it a step repeats, in a world: on a GPU the kernels that say so.
+    pub(crate) repeats: fn(&World) -> Option<Repeat>,
     /// Whether it is not one of the engine's own.
     pub(crate) custom: bool,
     /// Reads its parameters and inserts them as a resource.
@@ -210,6 +213,7 @@ impl System {
             device_when: |_| true,
             before_steps: None,
             shared_only: |_| false,
+            repeats: |_| None,
             custom: true,
             parameters: None,
             slopes: None,
@@ -329,6 +333,16 @@ impl System {
         system: impl IntoSystem<(), O, M> + Clone + Send + Sync + 'static,
     ) -> Self {
         Self { called_for_by, because: Arc::new(because), custom: false, ..Self::custom(name, phase, does, system) }
+    }
+
+    /// Its kernels by itself, as often as a step runs them.
+    #[doc(hidden)]
+    pub fn kernels(&self, world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+        let kernels = self.device.kernels(world, buffers);
+        match (self.repeats)(world) {
+            Some(repeat) => repeat.spread(&kernels, &kernels),
+            None => kernels,
+        }
     }
 
     /// That finds the forces of elements, patch by patch.

@@ -7,6 +7,7 @@ mod sweep;
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
+use super::rows::Rows;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, Foreseen, IntegrationCoefficients, NodeColumns};
@@ -36,11 +37,7 @@ pub fn system() -> System {
         "`Tool(...)` under `contacts`",
         |world| {
             let count: usize = world.query::<&ToolContacts>().iter(world).map(|contacts| contacts.tools.len()).sum();
-            match count {
-                0 => None,
-                1 => Some("1 tool at a body".into()),
-                count => Some(format!("{count} tools at bodies")),
-            }
+            (count > 0).then(|| if count == 1 { "1 tool at a body".into() } else { format!("{count} tools at bodies") })
         },
     )
     .on_nodes(stages)
@@ -112,6 +109,10 @@ impl NodeSystem for ToolContacts {
         (&'static mut ExternalForce, &'static mut ToolTouch),
     );
     type Prepared = ContactStep;
+
+    fn rows(&self) -> Rows<'_> {
+        Rows::List(&self.rows)
+    }
 
     fn prepare(&self, before: &Before<'_>) -> ContactStep {
         let values = before.signals.values();

@@ -201,6 +201,8 @@ fn every_system_is_a_file_of_its_name_and_a_line_of_the_step() {
                 "own_load",
                 "patch_pass",
                 "registry",
+                "repeat",
+                "rows",
                 "system",
             ]
             .contains(&stem.as_str())

@@ -5,7 +5,9 @@ mod kernel_units;
 mod kernel_worlds;
 use bevy_ecs::prelude::World;
 use kernel_support::SUPPORT;
-use kernel_worlds::{AROUND, Described, Effects, OF_NODES, all_kernels, shared_kernels};
+use kernel_worlds::{AROUND, Described, Effects, Grouped, OF_NODES, all_kernels, shared_kernels};
+use sinew::backend::Buffers;
+use sinew::backend::dispatch::{Dispatched, ElementsThenNodes, decide_interior_nodes, decide_many_steps};
 use sinew::backend::kernel::{BindingKind, Composer, Kernel, Layout, MostBuffers, Uniform};
 use sinew::backend::patch_lists::WEBGPU_WORKGROUP_MEMORY;
 use sinew::components::{Scheme, Signals};
@@ -39,9 +41,9 @@ fn all(effects: &Effects) -> Vec<(String, Kernel)> {
     }
     if effects.scheme == Scheme::Patches {
         let mut described = Described { most: LARGER, ..Described::default() };
-        let (inner, others, _) = kernel_worlds::interior_nodes(&without, world, &mut described);
-        assert!(inner.len() >= 2, "{effects:?}");
-        all.extend(inner.into_iter().chain(others).map(|kernel| (LARGER_DEVICE.to_owned(), kernel)));
+        let Grouped { moving, others, .. } = kernel_worlds::interior_nodes(&without, world, &mut described);
+        assert!(moving.len() >= 2, "{effects:?}");
+        all.extend(moving.into_iter().chain(others).map(|kernel| (LARGER_DEVICE.to_owned(), kernel)));
     }
     all.extend(kernel_worlds::guard_kernels(world));
     // one of each kind is enough
@@ -92,10 +94,11 @@ fn patches_move_the_nodes_inside_them_where_they_may() {
     let told = |effects: &Effects, systems: &[&str], most: MostBuffers| -> (Vec<String>, [usize; 2], String) {
         let mut simulation = effects.simulation(BackendChoice::Cpu);
         let mut described = Described { most, ..Described::default() };
-        let (inner, others, told) = kernel_worlds::interior_nodes(systems, simulation.world_mut(), &mut described);
-        assert!(told.iter().all(|body| (body.interior == 0) == inner.is_empty()), "{told:?}");
-        let labels = inner.iter().map(|kernel| kernel.label.split(" of ").next().unwrap().to_owned());
-        (labels.collect(), [inner.len(), others.len()], told[0].interior_because.clone())
+        let grouped = kernel_worlds::interior_nodes(systems, simulation.world_mut(), &mut described);
+        let Grouped { moving, others, told, .. } = grouped;
+        assert!(told.iter().all(|body| (body.interior == 0) == moving.is_empty()), "{told:?}");
+        let labels = moving.iter().map(|kernel| kernel.label.split(" of ").next().unwrap().to_owned());
+        (labels.collect(), [moving.len(), others.len()], told[0].interior_because.clone())
     };
     let plain = Effects::default();
     let (labels, counts, because) = told(&plain, &OF_NODES, LARGER);
@@ -115,6 +118,24 @@ fn patches_move_the_nodes_inside_them_where_they_may() {
     assert_eq!((counts, because.as_str()), ([0, 2], "it would need 10 storage buffers, and 9 may be"));
     let two_pass = Effects { scheme: Scheme::TwoPass, ..plain };
     assert_eq!(told(&two_pass, &OF_NODES, LARGER).2, "its forces are not summed by patches");
+}
+
+/// A decision is data, and kernels follow it: where nothing moves with patches, forces and nodes have their own.
+#[test]
+fn kernels_are_made_as_was_decided() {
+    let mut simulation = Effects::default().simulation(BackendChoice::Cpu);
+    let world = simulation.world_mut();
+    type Decide = fn(&mut [Dispatched], ElementsThenNodes<'_>, &World, &mut dyn Buffers);
+    let mut counts = |decide: Decide| {
+        let mut described = Described { most: LARGER, ..Described::default() };
+        let Grouped { alone, moving, others, .. } = kernel_worlds::grouped(&OF_NODES, world, &mut described, decide);
+        [alone.len(), moving.len(), others.len()]
+    };
+    // two bodies of two blocks
+    assert_eq!(counts(|_, _, _, _| {}), [4, 0, 2]);
+    assert_eq!(counts(decide_interior_nodes), [0, 4, 2]);
+    let many_steps: Decide = |told, step, world, buffers| decide_many_steps(usize::MAX, told, step, world, buffers);
+    assert_eq!(counts(many_steps), [0, 2, 0]);
 }
 
 fn members(layout: &Layout) -> Vec<(String, u32, u32)> {

@@ -124,6 +124,8 @@ pub struct Kernel {
     pub entry: &'static str,
     /// The element block that it works on, if it is one.
     pub block: Option<Entity>,
+    /// Whether it is of what its system repeats in a step, as the plan says.
+    pub repeated: bool,
     /// Systems that it is put together from, where it is.
     pub systems: Vec<Cow<'static, str>>,
     /// The WGSL, in any order: WGSL declarations are order-free.
@@ -149,6 +151,7 @@ impl Kernel {
             label: label.into(),
             entry,
             block: None,
+            repeated: false,
             systems: Vec::new(),
             fragments: Vec::new(),
             common: Vec::new(),
@@ -182,6 +185,11 @@ impl Kernel {
     pub fn threads(mut self, threads: u32) -> Self {
         self.threads = threads;
         self
+    }
+
+    /// Says that it is of what its system repeats.
+    pub fn repeated(self) -> Self {
+        Self { repeated: true, ..self }
     }
 
     /// The paths of the fragments, for messages: `shaders/tet4.wgsl + shaders/row.wgsl`.

@@ -3,6 +3,7 @@
 pub(crate) mod block_kernel;
 pub mod cpu;
 pub mod device;
+pub mod dispatch;
 pub(crate) mod face_kernel;
 pub mod gpu;
 pub mod kernel;

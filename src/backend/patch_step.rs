@@ -2,8 +2,8 @@
 //! `shaders/patch_step.wgsl` is the kernel.
 
 use super::Buffers;
+use super::dispatch::{ElementsThenNodes, block_of};
 use super::kernel::Kernel;
-use super::many_steps::{Dispatched, block_of, bodies};
 use super::node_stage::{self, Frame, NodeStage};
 use super::patch_lists::{BATCH_GROUPS, WEBGPU_WORKGROUP_MEMORY, workgroup_memory};
 use crate::components::{Corners, GROUP_ROWS, Label, Patches};
@@ -12,51 +12,15 @@ use crate::shader;
 use bevy_ecs::prelude::*;
 use std::ops::Range;
 
-/// The kernels of blocks whose patches move the nodes inside them: takes what they put together out of `elements`, all
-/// kernels of the element forces, and leaves the other nodes to `stages`, the one pass over the nodes that follows.
-/// `dispatched`, all bodies, hears of it.
-pub fn take_interior_nodes(
-    elements: &mut Vec<Kernel>,
-    stages: &mut Vec<NodeStage>,
-    dispatched: &mut [Dispatched],
-    world: &mut World,
-    buffers: &mut dyn Buffers,
-) -> Vec<Kernel> {
-    let mut kernels = Vec::new();
-    for ((body, _), told) in bodies(world).into_iter().zip(dispatched) {
-        if told.many_steps {
-            told.interior_because = "all nodes move in the dispatch of all steps".into();
-            continue;
-        }
-        match of_body(body, elements, stages, world, buffers) {
-            Ok((taken, first_interface)) => {
-                told.interior = first_interface;
-                told.interior_because = "no other patch has them".into();
-                elements.retain(|kernel| !taken.iter().any(|taken| taken.block == kernel.block));
-                let others = |stage: NodeStage| match stage.body() == body {
-                    true => stage.within(first_interface..node_stage::rows_of(body, world)),
-                    false => Some(stage),
-                };
-                *stages = std::mem::take(stages).into_iter().filter_map(others).collect();
-                kernels.extend(taken);
-            }
-            Err(reason) => told.interior_because = reason,
-        }
-    }
-    kernels
-}
-
-/// The kernels of the body's blocks that have nodes inside their patches, and the first row that is in none.
-fn of_body(
+/// The first row of a body that is inside no patch, where those before it may move with their patches; or why they may
+/// not.
+pub(super) fn first_interface(
     body: Entity,
-    elements: &[Kernel],
-    stages: &[NodeStage],
+    step: ElementsThenNodes<'_>,
     world: &World,
     buffers: &mut dyn Buffers,
-) -> Result<(Vec<Kernel>, u32), String> {
-    let is_of_body = |kernel: &&Kernel| block_of(kernel, world).is_some_and(|(_, block)| block.body == body);
-    let blocks: Vec<&Kernel> = elements.iter().filter(is_of_body).collect();
-    let of_nodes: Vec<&NodeStage> = stages.iter().filter(|stage| stage.body() == body).collect();
+) -> Result<u32, String> {
+    let (blocks, of_nodes) = (step.blocks_of(body, world), step.stages_of(body));
     if blocks.is_empty() || !of_nodes.iter().any(|stage| stage.sums_forces()) {
         return Err("it has no elements".into());
     }
@@ -69,24 +33,45 @@ fn of_body(
     }
     // of all nodes: those that stay may look at those that move
     node_stage::together(&of_nodes, Frame::node_pass(), node_stage::MOST_SHARED, buffers)?;
-    let most = buffers.most_buffers();
-    let mut steps = Vec::new();
     for kernel in blocks {
-        let Some(interior) = interior_rows(kernel, world)? else { continue };
-        let forces = NodeStage::of_patch(kernel.clone(), body, world).within(interior.clone());
-        let nodes = of_nodes.iter().filter_map(|stage| stage.within(interior.clone())).map(NodeStage::in_patch);
-        let step: Vec<NodeStage> = forces.into_iter().chain(nodes).collect();
-        let pass = node_stage::together(&step.iter().collect::<Vec<_>>(), Frame::patch_step(), most, buffers)?;
-        steps.push((kernel, step, pass));
+        let Some(stages) = step_of_block(kernel, body, &of_nodes, world)? else { continue };
+        let stages: Vec<&NodeStage> = stages.iter().collect();
+        node_stage::together(&stages, Frame::patch_step(), buffers.most_buffers(), buffers)?;
     }
-    let mut put_together = |(kernel, step, pass): (&Kernel, Vec<NodeStage>, _)| {
-        let stages: Vec<&NodeStage> = step.iter().collect();
-        let together = node_stage::patch_step(pass, &stages, kernel.threads, buffers);
+    Ok(first_interface)
+}
+
+/// The kernels of a body whose nodes inside patches move with them: of each of its blocks that has such nodes.
+pub(super) fn kernels_of(
+    body: Entity,
+    step: ElementsThenNodes<'_>,
+    world: &World,
+    buffers: &mut dyn Buffers,
+) -> Vec<Kernel> {
+    let of_nodes = step.stages_of(body);
+    let mut kernels = Vec::new();
+    for kernel in step.blocks_of(body, world) {
+        let Ok(Some(stages)) = step_of_block(kernel, body, &of_nodes, world) else { continue };
+        let together = node_stage::patch_step(&stages.iter().collect::<Vec<_>>(), kernel.threads, buffers);
         let label = kernel.block.and_then(|block| world.get::<Label>(block));
         let label = label.map_or_else(|| together.label.clone(), |block| format!("{} of {}", together.label, block.0));
-        Kernel { label, block: kernel.block, ..together }
-    };
-    Ok((steps.into_iter().map(&mut put_together).collect(), first_interface))
+        kernels.push(Kernel { label, block: kernel.block, ..together });
+    }
+    kernels
+}
+
+/// What a step does with the nodes inside the patches of a kernel's block, if there are any; or why a workgroup has no
+/// room for it.
+fn step_of_block(
+    kernel: &Kernel,
+    body: Entity,
+    of_nodes: &[&NodeStage],
+    world: &World,
+) -> Result<Option<Vec<NodeStage>>, String> {
+    let Some(interior) = interior_rows(kernel, world)? else { return Ok(None) };
+    let forces = NodeStage::of_patch(kernel.clone(), body, world).within(interior.clone());
+    let nodes = of_nodes.iter().filter_map(|stage| stage.within(interior.clone())).map(NodeStage::in_patch);
+    Ok(Some(forces.into_iter().chain(nodes).collect()))
 }
 
 /// The rows inside the patches of a kernel's block, if there are any; or why a workgroup has no room for what is done

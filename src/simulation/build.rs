@@ -78,7 +78,7 @@ impl Simulation {
         world.insert_resource(HeldEnergies(held.collect()));
         // Newton's iterations need the forces without what moves nodes
         let fuse = scene.scene.fuse && !scene.scene.is_static_by_newton();
-        let plan = Plan::of(&schedule, &access, fuse, &world);
+        let mut plan = Plan::of(&schedule, &access, fuse, &mut world);
         let mut solver = Solver::of(&scene.scene, options.precision, &mut world);
 
         let Chosen { gpu, mut why } = choose(options, of_the_cpu(&scene.scene))?;
@@ -88,7 +88,7 @@ impl Simulation {
         let gpu_name = gpu.as_ref().map(|gpu| gpu.report().name.clone());
         let kernels = match gpu {
             None => None,
-            Some(gpu) => match kernels_on(gpu, &schedule, &plan, &mut world) {
+            Some(gpu) => match kernels_on(gpu, &schedule, &mut plan, &mut world) {
                 Ok(kernels) => Some(kernels),
                 // a GPU that was not asked for need not be up to the scene
                 Err(Error::Gpu(reason)) if options.backend == BackendChoice::Auto => {
@@ -184,11 +184,12 @@ fn of_the_cpu(scene: &Scene) -> Option<[&'static str; 2]> {
     }
 }
 
-/// Takes a GPU for the run and makes the kernels of all its passes ready, in their order.
+/// Takes a GPU for the run, which says in the plan how it takes bodies through it, and makes the kernels of all its passes
+/// ready, in the order in which a step dispatches them.
 fn kernels_on(
     gpu: Gpu,
     schedule: &[Scheduled<'_>],
-    plan: &Plan,
+    plan: &mut Plan,
     world: &mut World,
 ) -> Result<Vec<Vec<KernelId>>, Error> {
     world.insert_resource(Device::new(gpu, all_columns()));
@@ -198,14 +199,21 @@ fn kernels_on(
         world.insert_resource(GuardKernels(kernels_of_guards));
     }
     let systems: Vec<&System> = schedule.iter().map(|scheduled| scheduled.system).collect();
-    let mut counts = Vec::new();
+    let (mut dispatches, mut decided) = (Vec::new(), Vec::new());
     let all = Device::prepare(world, |world, buffers| {
-        let (kernels, _) = step_kernels(plan, &systems, world, buffers);
-        counts.extend(kernels.iter().map(Vec::len));
+        let (kernels, dispatched) = step_kernels(plan, &systems, world, buffers);
+        decided = dispatched;
+        let mut first = 0;
+        for (kernels, pass) in kernels.iter().zip(plan.passes(true)) {
+            let places: Vec<usize> = (first..first + kernels.len()).collect();
+            dispatches.push(pass.spread(kernels, &places));
+            first += kernels.len();
+        }
         kernels.into_iter().flatten().collect()
     })?;
-    let mut all = all.into_iter();
-    Ok(counts.into_iter().map(|count| all.by_ref().take(count).collect()).collect())
+    plan.dispatched = Some(decided);
+    let ids = |places: Vec<usize>| places.into_iter().map(|place| all[place]).collect();
+    Ok(dispatches.into_iter().map(ids).collect())
 }
 
 /// The running schedule: an entry a pass. `kernels`: those of each pass on a GPU, where it runs there.

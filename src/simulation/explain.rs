@@ -10,10 +10,10 @@ mod page;
 use super::Simulation;
 use super::known::Known;
 use super::plan::{Pass, Plan, Planned};
-use crate::backend::many_steps::Dispatched;
+use crate::backend::dispatch::Dispatched;
 use crate::components::Precision;
 use crate::error::Error;
-use crate::systems::{Registry, System};
+use crate::systems::{Registry, Repeat, RowSet, System};
 use buffers::{Sizes, host_columns};
 use kernels::OnGpu;
 use serde::Serialize;
@@ -91,6 +91,10 @@ pub struct SystemInUse {
     pub on: &'static str,
     /// How many kernels it has on the device; one whose work is done beforehand needs none.
     pub kernels: usize,
+    /// For which nodes it is, where it works node by node.
+    pub rows: Option<RowSet>,
+    /// What of it a step repeats.
+    pub repeat: Option<Repeat>,
     /// Systems that share its pass.
     pub shares_with: Vec<String>,
     /// Steps between two runs.
@@ -156,6 +160,8 @@ pub struct KernelInUse {
     pub system: String,
     /// The WGSL function.
     pub entry: &'static str,
+    /// Dispatches of a step.
+    pub times: usize,
     /// Invocations.
     pub threads: u32,
     /// Invocations of a workgroup.
@@ -332,6 +338,8 @@ fn in_pass(plan: &Plan, pass: &Pass, place: usize, system: &System, on_gpu: bool
         phase: format!("{:?}", planned.phase),
         does: system.does.clone(),
         because: planned.because.clone(),
+        rows: planned.rows,
+        repeat: pass.repeat.clone(),
         shares_with: others.map(|&other| plan.systems[other].name.clone()).collect(),
         on: if on_device { "device" } else { "host" },
         kernels: 0,

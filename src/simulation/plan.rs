@@ -2,12 +2,16 @@
 //! once, from what systems are and what they touch, never from their names; the host's passes, a GPU's kernels and
 //! `explain` all follow it.
 
+mod grouping;
+
 use super::schedule::Scheduled;
+use crate::backend::dispatch::Dispatched;
+use crate::backend::kernel::Kernel;
 use crate::components::{ColumnAccess, Touched};
-use crate::systems::{OnDevice, OnHost, Phase};
+use crate::systems::{Phase, Repeat, RowSet};
 use bevy_ecs::prelude::World;
 use bevy_ecs::system::SystemAccess;
-use std::collections::VecDeque;
+use grouping::Grouping;
 
 /// A step as passes over what its systems touch.
 pub(super) struct Plan {
@@ -19,6 +23,8 @@ pub(super) struct Plan {
     /// first at once, and where a step is nothing else that changes anything; else what is in the way.
     elements_then_nodes: Result<[usize; 2], String>,
     nothing_else: Result<[usize; 2], String>,
+    /// How the GPU that runs it takes each body through it; `None` where none does.
+    pub dispatched: Option<Vec<Dispatched>>,
 }
 
 /// A system of a plan.
@@ -29,6 +35,8 @@ pub(super) struct Planned {
     pub phase: Phase,
     /// Why it is there.
     pub because: String,
+    /// For which nodes it is, where it works node by node.
+    pub rows: Option<RowSet>,
     /// Whether it fetches what it reads from a device by itself.
     pub observes: bool,
     /// Whether a GPU has it.
@@ -49,6 +57,15 @@ pub(super) struct Pass {
     /// Systems that nodes inside patches go through at once, and the others only in passes to come: what is between
     /// concerns nodes that are inside no patch.
     pub ahead: Vec<usize>,
+    /// What of it a step repeats: on a GPU those of its kernels that say so, on the CPU its system by itself.
+    pub repeat: Option<Repeat>,
+}
+
+impl Pass {
+    /// What stands for the kernels of the pass on a GPU, as often as a step runs them and in that order.
+    pub fn spread<T: Clone>(&self, kernels: &[Kernel], all: &[T]) -> Vec<T> {
+        self.repeat.as_ref().map_or_else(|| all.to_vec(), |repeat| repeat.spread(kernels, all))
+    }
 }
 
 /// What a pass goes over.
@@ -67,8 +84,11 @@ pub(super) enum Over {
 
 impl Plan {
     /// Of a schedule, whose systems touch so much. Without `fuse` each system has a pass of its own.
-    pub fn of(schedule: &[Scheduled<'_>], access: &[SystemAccess], fuse: bool, world: &World) -> Self {
-        let planned = |(scheduled, access): (&Scheduled<'_>, &SystemAccess)| {
+    pub fn of(schedule: &[Scheduled<'_>], access: &[SystemAccess], fuse: bool, world: &mut World) -> Self {
+        let row_set = |of: &Scheduled<'_>| Some(of.system.host.nodes()?.row_set(world));
+        let rows: Vec<Option<RowSet>> = schedule.iter().map(row_set).collect();
+        let world = &*world;
+        let planned = |((scheduled, access), rows): ((&Scheduled<'_>, &SystemAccess), Option<RowSet>)| {
             let Scheduled { system, because, every, .. } = scheduled;
             let touched = Touched(access);
             let names = |columns: Vec<ColumnAccess>| columns.into_iter().map(|column| column.name).collect();
@@ -76,6 +96,7 @@ impl Plan {
                 name: system.name.clone(),
                 phase: system.phase,
                 because: because.clone(),
+                rows,
                 observes: system.observes,
                 on_device: scheduled.on_device,
                 every: *every,
@@ -86,18 +107,24 @@ impl Plan {
         let passes = |on_gpu: bool| -> Vec<Pass> {
             let grouping = Grouping { schedule, access, on_gpu };
             let groups = if fuse { grouping.groups() } else { (0..schedule.len()).map(|place| vec![place]).collect() };
-            let pass = |systems: Vec<usize>| Pass { over: grouping.over(&systems), systems, ahead: Vec::new() };
+            let pass = |systems: Vec<usize>| Pass {
+                over: grouping.over(&systems),
+                repeat: grouping.repeat(&systems, world),
+                systems,
+                ahead: Vec::new(),
+            };
             let passes = groups.into_iter().map(pass).collect();
             if fuse && !on_gpu { grouping.ahead(passes, world) } else { passes }
         };
         let (on_cpu, on_gpu) = (passes(false), passes(true));
         let gpu = Grouping { schedule, access, on_gpu: true };
         Self {
-            systems: schedule.iter().zip(access).map(planned).collect(),
+            systems: schedule.iter().zip(access).zip(rows).map(planned).collect(),
             elements_then_nodes: gpu.elements_then_nodes(&on_gpu),
             nothing_else: gpu.nothing_but_elements_then_nodes(&on_gpu),
             on_cpu,
             on_gpu,
+            dispatched: None,
         }
     }
 
@@ -133,177 +160,4 @@ pub(super) fn each_once(all: impl IntoIterator<Item = &'static str>) -> Vec<&'st
         }
     }
     names
-}
-
-/// Groups neighbours of a schedule for a backend.
-#[derive(Clone, Copy)]
-struct Grouping<'a> {
-    schedule: &'a [Scheduled<'a>],
-    access: &'a [SystemAccess],
-    on_gpu: bool,
-}
-
-impl Grouping<'_> {
-    /// Places in the order in which systems run, those together that share a pass.
-    ///
-    /// A system that says where constrained nodes go may wait until just before the nodes move, where nothing in
-    /// between touches what it reads and writes: that is known of all systems, one's own too, from their queries.
-    fn groups(&self) -> Vec<Vec<usize>> {
-        let mut order: Vec<usize> = (0..self.schedule.len()).collect();
-        let is_boundary = |&place: &usize| self.schedule[place].system.phase == Phase::Boundary;
-        for place in (0..self.schedule.len()).filter(is_boundary).rev() {
-            self.put_off(place, &mut order);
-        }
-        let mut groups: Vec<Vec<usize>> = Vec::new();
-        for place in order {
-            match groups.last_mut().filter(|group| self.is_of_nodes(place) && self.is_of_nodes(group[0])) {
-                Some(group) => group.push(place),
-                None => groups.push(vec![place]),
-            }
-        }
-        if self.on_gpu { groups } else { self.with_elements(groups) }
-    }
-
-    /// On the CPU the forces of elements belong to the pass that follows them, where that sums them and moves nodes:
-    /// those inside a patch move with it.
-    fn with_elements(&self, groups: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
-        let mut together: Vec<Vec<usize>> = Vec::new();
-        for group in groups {
-            let sums = self.schedule[group[0]].system.host.nodes().is_some_and(|first| first.sums_forces);
-            match together.last_mut().filter(|before| sums && self.moves_nodes(&group) && self.is_of_elements(before)) {
-                Some(before) => before.extend(group),
-                None => together.push(group),
-            }
-        }
-        together
-    }
-
-    /// On the CPU what concerns only nodes that are inside no patch (contact between surfaces, glue) does not keep
-    /// those inside from moving with their patch.
-    fn ahead(&self, passes: Vec<Pass>, world: &World) -> Vec<Pass> {
-        let mut passes: VecDeque<Pass> = passes.into();
-        let mut all = Vec::new();
-        while let Some(mut elements) = passes.pop_front() {
-            let sums =
-                |pass: &Pass| self.schedule[pass.systems[0]].system.host.nodes().is_some_and(|of| of.sums_forces);
-            let is_between = |pass: &Pass| {
-                let of = &self.schedule[pass.systems[0]];
-                pass.over == Over::Itself && of.every == 1 && of.interval.is_none() && (of.system.shared_only)(world)
-            };
-            let between = passes.iter().skip(1).take_while(|pass| is_between(pass)).count();
-            let fits = self.is_of_elements(&elements.systems)
-                && between > 0
-                && sums(&passes[0])
-                && passes.get(between + 1).is_some_and(|pass| self.moves_nodes(&pass.systems));
-            if !fits {
-                all.push(elements);
-                continue;
-            }
-            elements.systems.extend(passes.pop_front().into_iter().flat_map(|sums| sums.systems));
-            let between: Vec<Pass> = passes.drain(..between).collect();
-            if let Some(mut moves) = passes.pop_front() {
-                elements.ahead.clone_from(&moves.systems);
-                (elements.over, moves.over) = (Over::Elements, Over::Shared);
-                all.push(elements);
-                all.extend(between);
-                all.push(moves);
-            }
-        }
-        all
-    }
-
-    /// Moves a system on to just before the first that it must not be exchanged with, if that one works node by node
-    /// too.
-    fn put_off(&self, place: usize, order: &mut [usize]) {
-        let Some(from) = order.iter().position(|&other| other == place) else { return };
-        let blocks = |&other: &usize| !may_be_exchanged(&self.access[place], &self.access[other]);
-        let Some(steps) = order[from + 1..].iter().position(blocks) else { return };
-        let to = from + 1 + steps;
-        if self.is_of_nodes(place) && self.is_of_nodes(order[to]) {
-            order[from..to].rotate_left(1);
-        }
-    }
-
-    /// Whether the system of that place works node by node, in every step.
-    fn is_of_nodes(&self, place: usize) -> bool {
-        let Scheduled { every, interval, .. } = &self.schedule[place];
-        self.goes_over_nodes(place) && *every == 1 && interval.is_none()
-    }
-
-    fn goes_over_nodes(&self, place: usize) -> bool {
-        let system = self.schedule[place].system;
-        match self.on_gpu {
-            true => matches!(system.device, OnDevice::Stages(_)),
-            false => system.host.nodes().is_some(),
-        }
-    }
-
-    /// Whether these are the forces of elements alone.
-    fn is_of_elements(&self, group: &[usize]) -> bool {
-        matches!(group, [place] if match self.on_gpu {
-            true => {
-                let scheduled = &self.schedule[*place];
-                scheduled.system.phase == Phase::ElementForces && scheduled.on_device
-            }
-            false => matches!(self.schedule[*place].system.host, OnHost::Elements(_)),
-        })
-    }
-
-    fn moves_nodes(&self, group: &[usize]) -> bool {
-        let of_nodes = |&place: &usize| self.schedule[place].system.host.nodes();
-        group.iter().filter_map(of_nodes).any(|system| system.moves_nodes)
-    }
-
-    fn over(&self, group: &[usize]) -> Over {
-        match self.goes_over_nodes(group[0]) {
-            true => Over::Nodes,
-            false if group.len() > 1 => Over::Elements,
-            false => Over::Itself,
-        }
-    }
-
-    /// What only looks does so between steps.
-    fn changes(&self, pass: &Pass) -> bool {
-        !self.schedule[pass.systems[0]].system.observes
-    }
-
-    fn moves_in_a_pass(&self, pass: &Pass) -> bool {
-        pass.over == Over::Nodes && pass.systems.len() > 1 && self.moves_nodes(&pass.systems)
-    }
-
-    /// See [`Plan::elements_then_nodes`].
-    fn elements_then_nodes(&self, passes: &[Pass]) -> Result<[usize; 2], String> {
-        let mut places = (0..passes.len()).filter(|&place| self.changes(&passes[place]));
-        let of_elements = |&place: &usize| self.is_of_elements(&passes[place].systems);
-        let elements = places.find(of_elements).ok_or("it has no element forces")?;
-        match places.next() {
-            Some(nodes) if self.moves_in_a_pass(&passes[nodes]) => Ok([elements, nodes]),
-            Some(other) => Err(self.apart(&passes[other])),
-            None => Err("nothing moves the nodes after element forces".into()),
-        }
-    }
-
-    /// See [`Plan::nothing_but_elements_then_nodes`].
-    fn nothing_but_elements_then_nodes(&self, passes: &[Pass]) -> Result<[usize; 2], String> {
-        let is_other = |pass: &&Pass| !self.is_of_elements(&pass.systems) && !self.moves_in_a_pass(pass);
-        match passes.iter().filter(|pass| self.changes(pass)).find(is_other) {
-            Some(other) => Err(self.apart(other)),
-            None => self.elements_then_nodes(passes),
-        }
-    }
-
-    fn apart(&self, pass: &Pass) -> String {
-        format!("`{}` does not share a pass over the nodes", self.schedule[pass.systems[0]].system.name)
-    }
-}
-
-/// Whether neither writes what the other touches.
-fn may_be_exchanged(one: &SystemAccess, other: &SystemAccess) -> bool {
-    match (one, other) {
-        (SystemAccess::None, _) | (_, SystemAccess::None) => true,
-        (SystemAccess::Shared(one), SystemAccess::Shared(other)) => {
-            one.combined_access().is_compatible(other.combined_access())
-        }
-        _ => false,
-    }
 }

@@ -2,25 +2,47 @@
 
 use super::plan::Plan;
 use crate::backend::Buffers;
+use crate::backend::dispatch::{self, Dispatched, ElementsThenNodes};
 use crate::backend::kernel::Kernel;
-use crate::backend::many_steps::{Dispatched, MOST_ELEMENTS, step_by_step, take_small_bodies};
+use crate::backend::many_steps::MOST_ELEMENTS;
 use crate::backend::node_stage::{NodeStage, node_kernels};
-use crate::backend::patch_step::take_interior_nodes;
 use crate::systems::{OnDevice, System};
 use bevy_ecs::prelude::*;
 
-/// The kernels of each pass of a plan, whose `systems` stand as in the plan, and how each body's steps are dispatched.
-/// A kernel that sums forces and moves nodes is among those of the pass that moves the nodes.
+/// The kernels of each pass of a plan, whose `systems` stand as in the plan, and how each body is taken through them: as
+/// the plan says, or as it is decided here where no GPU runs it. A kernel that sums forces and moves nodes is among
+/// those of the pass that moves the nodes.
 pub(super) fn step_kernels(
     plan: &Plan,
     systems: &[&System],
     world: &mut World,
     buffers: &mut dyn Buffers,
 ) -> (Vec<Vec<Kernel>>, Vec<Dispatched>) {
-    let mut kernels: Vec<Vec<Kernel>> = Vec::new();
-    let mut stages: Vec<Vec<NodeStage>> = Vec::new();
-    let passes = plan.passes(true);
-    for pass in passes {
+    let (mut kernels, mut stages) = described(plan, systems, world, buffers);
+    let dispatched = match &plan.dispatched {
+        Some(dispatched) => dispatched.clone(),
+        None => decided(plan, &kernels, &stages, world, buffers),
+    };
+    if let Ok([elements, nodes]) = plan.elements_then_nodes() {
+        let step = ElementsThenNodes { elements: &kernels[elements], stages: &stages[nodes] };
+        let (alone, moving, left) = dispatch::grouped(&dispatched, step, world, buffers);
+        (kernels[elements], kernels[nodes], stages[nodes]) = (alone, moving, left);
+    }
+    for ((kernels, stages), pass) in kernels.iter_mut().zip(stages).zip(plan.passes(true)) {
+        kernels.extend(node_kernels(stages, pass.systems.len() > 1, buffers));
+    }
+    (kernels, dispatched)
+}
+
+/// Kernels and stages as systems describe them, pass by pass.
+fn described(
+    plan: &Plan,
+    systems: &[&System],
+    world: &mut World,
+    buffers: &mut dyn Buffers,
+) -> (Vec<Vec<Kernel>>, Vec<Vec<NodeStage>>) {
+    let (mut kernels, mut stages) = (Vec::new(), Vec::new());
+    for pass in plan.passes(true) {
         let (mut of_pass, mut to_nodes) = (Vec::new(), Vec::new());
         for &place in &pass.systems {
             match &systems[place].device {
@@ -33,25 +55,26 @@ pub(super) fn step_kernels(
         kernels.push(of_pass);
         stages.push(to_nodes);
     }
-    let mut dispatched = match plan.nothing_but_elements_then_nodes() {
-        Ok([elements, nodes]) => {
-            let (small, how) =
-                take_small_bodies(MOST_ELEMENTS, &mut kernels[elements], &mut stages[nodes], world, buffers);
-            kernels[nodes] = small;
-            how
-        }
-        Err(reason) => step_by_step(reason, world),
-    };
-    match plan.elements_then_nodes() {
-        Ok([elements, nodes]) => {
-            let (elements, stages) = (&mut kernels[elements], &mut stages[nodes]);
-            let inner = take_interior_nodes(elements, stages, &mut dispatched, world, buffers);
-            kernels[nodes].extend(inner);
-        }
-        Err(reason) => dispatched.iter_mut().for_each(|body| reason.clone_into(&mut body.interior_because)),
+    (kernels, stages)
+}
+
+/// How a GPU would take each body through a plan.
+fn decided(
+    plan: &Plan,
+    kernels: &[Vec<Kernel>],
+    stages: &[Vec<NodeStage>],
+    world: &mut World,
+    buffers: &mut dyn Buffers,
+) -> Vec<Dispatched> {
+    let (whole, part) = (plan.nothing_but_elements_then_nodes(), plan.elements_then_nodes());
+    let [not_whole, not_part] = [whole, part].map(|places| places.err().unwrap_or_default());
+    let mut dispatched = dispatch::pass_by_pass(not_whole, not_part, world);
+    let of = |[elements, nodes]: [usize; 2]| ElementsThenNodes { elements: &kernels[elements], stages: &stages[nodes] };
+    if let Ok(places) = whole {
+        dispatch::decide_many_steps(MOST_ELEMENTS, &mut dispatched, of(places), world, buffers);
     }
-    for ((kernels, stages), pass) in kernels.iter_mut().zip(stages).zip(passes) {
-        kernels.extend(node_kernels(stages, pass.systems.len() > 1, buffers));
+    if let Ok(places) = part {
+        dispatch::decide_interior_nodes(&mut dispatched, of(places), world, buffers);
     }
-    (kernels, dispatched)
+    dispatched
 }

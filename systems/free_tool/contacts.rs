@@ -1,6 +1,6 @@
 //! Nodes against a rigid body that gives way: all forces of a step.
 
-use super::{Response, ToolStep};
+use super::{Repeat, Response, ToolStep};
 use crate::backend::cpu::Foreseen;
 use crate::components::{FreeTool, FreeTouch, Pose};
 use glam::{DMat3, DVec3};
@@ -10,6 +10,11 @@ const SWEEPS: usize = 200;
 
 /// Changes of a sweep, in edges, that are none.
 const SETTLED: f64 = 1e-9;
+
+/// What [`solve`] repeats for each tool.
+pub(super) fn sweeps() -> Repeat {
+    Repeat { times: SWEEPS, until: Some("nothing changes"), what: vec!["forces between a tool and each of its nodes"] }
+}
 
 /// A node that may touch a tool.
 pub(super) struct Near {

@@ -210,12 +210,10 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
     }
     let of_all = |entry, text, threads: usize| shared.of_ties(entry, text, of_whole, world).threads(threads as u32);
     all.push(of_all("glue_share", shader!("glue_share"), nodes).bind("glue_shares", shared.shares));
-    for _ in 0..glue.sweeps.max(1) {
-        let correct = shared.with_nodes(of_all("glue_correct", shader!("glue_correct"), ties));
-        all.push(correct.bind("glue_shares", shared.shares));
-        let apply = of_all("glue_apply", shader!("glue_apply"), nodes).fragment(shader!("glue_forces"));
-        all.push(shared.with_nodes(apply));
-    }
+    let correct = shared.with_nodes(of_all("glue_correct", shader!("glue_correct"), ties));
+    all.push(correct.bind("glue_shares", shared.shares).repeated());
+    let apply = of_all("glue_apply", shader!("glue_apply"), nodes).fragment(shader!("glue_forces"));
+    all.push(shared.with_nodes(apply).repeated());
     for &(body, of, uniform) in of_bodies.iter().filter(|(_, of, _)| of.tie_count > 0) {
         all.push(of_ties("glue_note", shader!("glue_note"), body, of, uniform, buffers));
     }

@@ -90,7 +90,6 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
     };
     let contacts = contacts.clone();
     contacts.note(shared.lists, shared.motion, world);
-    let has_friction = contacts.meetings.iter().flatten().any(|meeting| meeting.friction != [0.0; 2]);
     let of_bodies: Vec<(Entity, SurfaceContact)> = (0..)
         .zip(&contacts.bodies)
         .map(|(body, &entity)| {
@@ -119,18 +118,15 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
                 .threads(of.count),
         );
     }
-    for _ in 0..contacts.sweeps.max(1) {
-        let pairs = 2 * nodes as u32;
-        let whole = |entry, text, threads| {
-            shared.with_nodes(shared.of_contacts(entry, text, shared.surface, world)).threads(threads)
-        };
-        let apply = || whole("surface_contact_apply", shader!("surface_contact_apply"), nodes as u32);
-        all.push(whole("surface_contact_impulse", shader!("surface_contact_impulse"), pairs));
-        all.push(apply());
-        if has_friction {
-            all.push(whole("surface_contact_friction", shader!("surface_contact_friction"), pairs));
-            all.push(apply());
-        }
+    let sweep = |entry, text, threads| {
+        shared.with_nodes(shared.of_contacts(entry, text, shared.surface, world)).threads(threads).repeated()
+    };
+    let (apply, pairs) = ("surface_contact_apply", 2 * nodes as u32);
+    all.push(sweep("surface_contact_impulse", shader!("surface_contact_impulse"), pairs));
+    all.push(sweep(apply, shader!("surface_contact_apply"), nodes as u32));
+    if contacts.has_friction() {
+        all.push(sweep("surface_contact_friction", shader!("surface_contact_friction"), pairs));
+        all.push(sweep(apply, shader!("surface_contact_apply"), nodes as u32));
     }
     for ((body, of), &surface) in of_bodies.iter().zip(&uniforms) {
         let push = shared.of_contacts("surface_contact_push", shader!("surface_contact_push"), surface, world);

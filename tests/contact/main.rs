@@ -20,4 +20,5 @@ mod ironing;
 mod lost_surfaces;
 mod surfaces;
 mod sutures;
+mod sweeps;
 mod ties;

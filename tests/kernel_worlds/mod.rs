@@ -3,10 +3,9 @@
 
 use bevy_ecs::prelude::*;
 use sinew::backend::Buffers;
+use sinew::backend::dispatch::{self, Dispatched, ElementsThenNodes};
 use sinew::backend::kernel::{BufferId, Composed, Composer, Kernel, KernelError, MostBuffers};
-use sinew::backend::many_steps::{Dispatched, step_by_step, take_small_bodies};
 use sinew::backend::node_stage::{NodeStage, node_kernels};
-use sinew::backend::patch_step::take_interior_nodes;
 use sinew::components::*;
 use sinew::systems::{OnDevice, Registry};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
@@ -321,7 +320,7 @@ pub fn all_kernels(world: &mut World) -> (Vec<(String, Kernel)>, Described) {
     let mut all = Vec::new();
     for system in Registry::default().systems() {
         if (system.because)(world).is_some() {
-            let kernels = system.device.kernels(world, &mut described);
+            let kernels = system.kernels(world, &mut described);
             all.extend(kernels.into_iter().map(|kernel| (system.name.clone(), kernel)));
         }
     }
@@ -341,24 +340,42 @@ pub fn shared_kernels(systems: &[&str], world: &mut World, buffers: &mut dyn Buf
 /// Kernels of bodies that take many steps in a dispatch: however many elements they have, if only their patches allow
 /// it.
 pub fn small_bodies(of_nodes: &[&str], world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
-    let forces = Registry::default().get("element_forces").unwrap().device.clone();
-    let mut elements = forces.kernels(world, buffers);
-    let mut stages = stages_of(of_nodes, world, buffers);
-    take_small_bodies(usize::MAX, &mut elements, &mut stages, world, buffers).0
+    grouped(of_nodes, world, buffers, |told, step, world, buffers| {
+        dispatch::decide_many_steps(usize::MAX, told, step, world, buffers);
+    })
+    .moving
 }
 
-/// Kernels of patches that move the nodes inside them, those of the other nodes, and what is told of each body.
-pub fn interior_nodes(
+/// Kernels of patches that move the nodes inside them, and what is left to others.
+pub fn interior_nodes(of_nodes: &[&str], world: &mut World, buffers: &mut dyn Buffers) -> Grouped {
+    grouped(of_nodes, world, buffers, dispatch::decide_interior_nodes)
+}
+
+/// A step of element forces and one pass of nodes, as it was decided.
+pub struct Grouped {
+    /// Kernels that do nothing but find forces.
+    pub alone: Vec<Kernel>,
+    /// Those that find forces and move nodes.
+    pub moving: Vec<Kernel>,
+    /// Those of the nodes that are left.
+    pub others: Vec<Kernel>,
+    /// What is told of each body.
+    pub told: Vec<Dispatched>,
+}
+
+pub fn grouped(
     of_nodes: &[&str],
     world: &mut World,
     buffers: &mut dyn Buffers,
-) -> (Vec<Kernel>, Vec<Kernel>, Vec<Dispatched>) {
+    decide: impl FnOnce(&mut [Dispatched], ElementsThenNodes<'_>, &World, &mut dyn Buffers),
+) -> Grouped {
     let forces = Registry::default().get("element_forces").unwrap().device.clone();
-    let mut elements = forces.kernels(world, buffers);
-    let mut stages = stages_of(of_nodes, world, buffers);
-    let mut told = step_by_step("patches are to move their nodes", world);
-    let inner = take_interior_nodes(&mut elements, &mut stages, &mut told, world, buffers);
-    (inner, node_kernels(stages, true, buffers), told)
+    let (elements, stages) = (forces.kernels(world, buffers), stages_of(of_nodes, world, buffers));
+    let step = ElementsThenNodes { elements: &elements, stages: &stages };
+    let mut told = dispatch::pass_by_pass("nothing is decided", "nothing is decided", world);
+    decide(&mut told, step, world, buffers);
+    let (alone, moving, left) = dispatch::grouped(&told, step, world, buffers);
+    Grouped { alone, moving, others: node_kernels(left, true, buffers), told }
 }
 
 fn stages_of(systems: &[&str], world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {

@@ -53,7 +53,7 @@ pub fn run_all(systems: &[&str], effects: &Effects, step: u64, change: impl Fn(&
         body.run((), on_host).unwrap().unwrap();
     }
     let describe = |world: &mut World, buffers: &mut dyn sinew::backend::Buffers| match systems {
-        [one] => registry.get(one).unwrap().device.kernels(world, buffers),
+        [one] => registry.get(one).unwrap().kernels(world, buffers),
         several => shared_kernels(several, world, buffers),
     };
     run_kernels(gpu, device.world_mut(), describe, 1);
@@ -70,7 +70,7 @@ pub fn run_in(system: &str, world: impl Fn() -> sinew::Simulation) -> Option<Pai
     let mut body = system.host.alone(on_host);
     body.initialize(on_host);
     body.run((), on_host).unwrap().unwrap();
-    run_kernels(gpu, device.world_mut(), |world, buffers| system.device.kernels(world, buffers), 1);
+    run_kernels(gpu, device.world_mut(), |world, buffers| system.kernels(world, buffers), 1);
     Some(Pair { before, host, device })
 }
 

@@ -77,9 +77,9 @@ fn old_lists_lose_no_contact_on_a_gpu() {
     old.world_mut().resource_mut::<SurfaceContacts>().skin = -10.0;
     let registry = Registry::default();
     let system = registry.get("surface_contact").unwrap();
-    run_kernels(gpu, fresh.world_mut(), |world, buffers| system.device.kernels(world, buffers), 1);
+    run_kernels(gpu, fresh.world_mut(), |world, buffers| system.kernels(world, buffers), 1);
     let Some(gpu) = gpu_or_reason() else { return };
-    run_kernels(gpu, old.world_mut(), |world, buffers| system.device.kernels(world, buffers), 1);
+    run_kernels(gpu, old.world_mut(), |world, buffers| system.kernels(world, buffers), 1);
     let mut touched = 0;
     for body in entities::<ContactForce>(fresh.world_mut()) {
         let [a, b] = [&fresh, &old].map(|of| of.world().get::<ContactForce>(body).unwrap());

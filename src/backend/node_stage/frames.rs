@@ -148,13 +148,15 @@ fn node_pass(pass: Pass, stages: &[&NodeStage], buffers: &mut dyn Buffers) -> Ke
 }
 
 /// The kernel of [`Frame::many_steps`].
-pub fn many_steps(pass: Pass, stages: &[&NodeStage], invocations: usize, buffers: &mut dyn Buffers) -> Kernel {
+pub fn many_steps(stages: &[&NodeStage], invocations: usize, buffers: &mut dyn Buffers) -> Kernel {
+    let pass = Pass::of(stages, Frame::many_steps(invocations));
     let rows = NodePass { count: stages[0].nodes, first: 0 };
     pass.into_kernel(stages, rows, buffers).threads(invocations as u32)
 }
 
 /// The kernel of [`Frame::patch_step`], of so many invocations in all.
-pub fn patch_step(pass: Pass, stages: &[&NodeStage], invocations: u32, buffers: &mut dyn Buffers) -> Kernel {
+pub fn patch_step(stages: &[&NodeStage], invocations: u32, buffers: &mut dyn Buffers) -> Kernel {
+    let pass = Pass::of(stages, Frame::patch_step());
     let node = &stages[stages.len() - 1];
     let rows = NodePass { count: node.nodes, first: node.within.start };
     pass.into_kernel(stages, rows, buffers).threads(invocations)

@@ -4,9 +4,9 @@ use super::buffers::{Counter, Sizes};
 use super::{Bound, Buffer, KernelInUse, Piece};
 use crate::backend::Buffers;
 use crate::backend::device::Device;
+use crate::backend::dispatch::Dispatched;
 use crate::backend::gpu::GpuError;
 use crate::backend::kernel::{BindingKind, Kernel};
-use crate::backend::many_steps::Dispatched;
 use crate::error::Error;
 use crate::simulation::plan::{Over, Plan};
 use crate::simulation::step_kernels::step_kernels;
@@ -36,7 +36,8 @@ pub fn describe(plan: &Plan, systems: &[&System], sizes: &Sizes, world: &mut Wor
                 true => kernel.systems.join(" + "),
                 false => plan.systems[pass.systems[0]].name.clone(),
             };
-            described.push(in_use(system, kernel, &mut counter)?);
+            let times = pass.repeat.as_ref().filter(|_| kernel.repeated).map_or(1, |repeat| repeat.times);
+            described.push(KernelInUse { times, ..in_use(system, kernel, &mut counter)? });
         }
     }
     Ok(OnGpu { kernels: described, buffers: counter.buffers, dispatched })
@@ -67,6 +68,7 @@ fn in_use(system: String, kernel: &Kernel, counter: &mut Counter<'_>) -> Result<
         label: kernel.label.clone(),
         system,
         entry: kernel.entry,
+        times: 1,
         threads: kernel.threads,
         workgroup: entry.map_or(1, |entry| entry.workgroup_size.iter().product()),
         workgroup_memory: entry.map_or(0, |entry| entry.workgroup_memory),

@@ -70,6 +70,12 @@ fn write_system(system: &SystemInUse, on_gpu: bool, f: &mut Formatter<'_>) -> Re
         (true, ..) => ", on the host".to_string(),
     };
     writeln!(f, "  {:16}  because: {}{place}{every}", "", system.because)?;
+    if let Some(repeat) = &system.repeat {
+        writeln!(f, "  {:16}  {repeat}", "")?;
+    }
+    if let Some(rows) = &system.rows {
+        writeln!(f, "  {:16}  for {rows}", "")?;
+    }
     if !system.shares_with.is_empty() {
         writeln!(f, "  {:16}  in one pass with {}", "", system.shares_with.join(", "))?;
     }
@@ -98,7 +104,8 @@ fn write_part(part: &Part, f: &mut Formatter<'_>) -> Result {
 
 fn write_kernel(kernel: &KernelInUse, f: &mut Formatter<'_>) -> Result {
     let workgroups = kernel.threads.div_ceil(kernel.workgroup.max(1));
-    writeln!(f, "\nKernel {} (system {})", kernel.label, kernel.system)?;
+    let times = if kernel.times == 1 { String::new() } else { format!(", {} times in a step", kernel.times) };
+    writeln!(f, "\nKernel {} (system {}){times}", kernel.label, kernel.system)?;
     let KernelInUse { entry, threads, workgroup, workgroup_memory, storage_buffers, lines, .. } = kernel;
     let shared = match workgroup_memory {
         0 => String::new(),

@@ -197,3 +197,74 @@ fn a_scene_without_fibres_has_no_fibre_code_and_no_fibre_buffer() {
     assert!(!without.contains("fibre"), "{without}");
     assert!(with.contains("shaders/fibres.wgsl") && with.contains("fibre_direction"), "{with}");
 }
+
+/// What a key of systems says, by their names.
+fn of_systems(json: &serde_json::Value, key: &str) -> Vec<(String, serde_json::Value)> {
+    let systems = json["systems"].as_array().unwrap().iter();
+    systems.map(|system| (system["name"].as_str().unwrap().to_owned(), system[key].clone())).collect()
+}
+
+#[test]
+fn node_systems_say_for_which_nodes_they_are() {
+    let place = Workspace::new();
+    // two sides of 4 × 4 nodes with an edge of 4 in common, one of them twice
+    let force = |on: &str| format!("NodalForce(on: Set(\"{on}\"), force: (1, 0, 0))");
+    let forces = ["z1", "x1", "x1"].map(force).join(", ");
+    let loads = format!("loads=[Gravity(acceleration: (0, 0, -9.81)), {forces}]");
+    let sucks = "suction=[(tool: \"tip\", pressure: 1000, reach: 0.01)]";
+    let tip = "tools={\"tip\": (shape: Tube(inner: 0.005, outer: 0.006, length: 0.05), at: (0.05, 0.05, 0.3))}";
+    let sets = ["--set", &loads, "--set", tip, "--set", sucks];
+    let explain = [&["explain", "block.ron", "--backend", "cpu"], &sets[..]].concat();
+    let json: serde_json::Value = serde_json::from_str(&place.done(&[&explain[..], &["--json"]].concat())).unwrap();
+    let all = || serde_json::json!("All");
+    let list = |nodes: usize| serde_json::json!({ "List": nodes });
+    let nothing = || serde_json::Value::Null;
+    let said = of_systems(&json, "rows");
+    for (system, rows) in [
+        ("boundary", list(16)),
+        ("element_forces", nothing()),
+        ("gather", all()),
+        ("gravity", all()),
+        ("nodal_force", list(28)),
+        ("suction", serde_json::json!("Changing")),
+        ("integrate", all()),
+        ("observe", nothing()),
+    ] {
+        assert!(said.contains(&(system.to_owned(), rows)), "{system}: {said:?}");
+    }
+    let page = place.done(&explain);
+    for words in
+        ["for all nodes of its bodies", "for a list of 28 nodes", "for a list of nodes that changes while it runs"]
+    {
+        assert!(page.contains(words), "{words:?} is not in\n{page}");
+    }
+}
+
+#[test]
+fn what_a_step_repeats_is_told_once_with_its_number() {
+    let explained = |sweeps: &str| {
+        let contacts = format!("contacts=[Itself({sweeps}friction: 0.3)]");
+        let json = on_a_gpu(&["--set", &contacts]);
+        let kernels = json["kernels"].as_array().unwrap().iter();
+        let of_contact = kernels.filter(|kernel| kernel["system"] == "surface_contact");
+        let times = of_contact.map(|kernel| (kernel["entry"].as_str().unwrap().to_owned(), kernel["times"].clone()));
+        let repeats = of_systems(&json, "repeat").into_iter().find(|(name, _)| name == "surface_contact").unwrap().1;
+        (times.collect::<Vec<_>>(), repeats)
+    };
+    let what = ["normal forces", "what they do to nodes", "friction", "what it does to nodes"];
+    for (sweeps, times, repeats) in [
+        ("", 1, serde_json::Value::Null),
+        ("sweeps: 3, ", 3, serde_json::json!({ "times": 3, "until": null, "what": what })),
+    ] {
+        let (found, told) = explained(sweeps);
+        let named = |name: &str, times: usize| (format!("surface_contact{name}"), serde_json::json!(times));
+        let before = ["_place", "_foresee", ""].map(|name| named(name, 1));
+        let swept = ["_impulse", "_apply", "_friction", "_apply"].map(|name| named(name, times));
+        let after = ["_push", "_touch"].map(|name| named(name, 1));
+        assert_eq!(found, [&before[..], &swept, &after].concat(), "{sweeps:?}");
+        assert_eq!(told, repeats);
+    }
+    let page =
+        Workspace::new().done(&["explain", "block.ron", "--backend", "cpu", "--set", "contacts=[Itself(sweeps: 3)]"]);
+    assert!(page.contains("repeat 3 times: normal forces, what they do to nodes\n"), "{page}");
+}
