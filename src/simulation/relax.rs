@@ -90,7 +90,7 @@ pub(super) struct Relaxing {
     settled_at: Option<u64>,
     /// The check since which all is as quiet as it must be.
     quiet_since: Option<u64>,
-    newton: Option<ByNewton>,
+    newton: Option<Box<ByNewton>>,
 }
 
 /// Newton's iterations, tried at the start, and again where pseudo-steps have come near enough.
@@ -128,7 +128,7 @@ impl Relaxing {
         if search.method == SearchMethod::Newton {
             let reachable = if precision == Precision::F64 { 1e-10 } else { 1e-5 };
             let statics = Statics::new(search.tolerance.unwrap_or(reachable), world);
-            new.newton = Some(ByNewton { statics, below: f64::INFINITY });
+            new.newton = Some(Box::new(ByNewton { statics, below: f64::INFINITY }));
             // loads and motions have begun then, and are nothing yet
             new.next_check = 1;
         }

@@ -81,7 +81,10 @@ impl TwoLevel {
     fn turn(&mut self, operator: &Operator<'_>, again: bool) {
         let places: Vec<f64> = operator.bodies.iter().flat_map(|&body| place_of(operator, body)).collect();
         let displacement = |node: usize| DVec3::from_slice(&places[3 * node..]);
-        let turned = self.pieces.iter_mut().fold(false, |turned, piece| piece.coarse.turn(displacement) || turned);
+        let mut turned = false;
+        for piece in &mut self.pieces {
+            turned |= piece.coarse.turn(displacement);
+        }
         if turned || self.turned || again {
             self.inverses.clear();
             self.inverses.extend((0..operator.free.len() / 3).map(|node| self.fine.at_rest(node)));
@@ -165,6 +168,7 @@ fn find_pieces(operator: &Operator<'_>) -> Vec<Piece> {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::backend::cpu::Cpu;
     use crate::simulation::implicit::axes::{Axes, Motion};

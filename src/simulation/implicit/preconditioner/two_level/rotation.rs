@@ -45,6 +45,7 @@ pub fn angle(rotation: &DMat3) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
     use glam::{DQuat, DVec3};
 
