@@ -33,6 +33,7 @@ impl Display for RowSet {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match self {
             Self::All => write!(f, "all nodes of its bodies"),
+            Self::List(0) => write!(f, "no node"),
             Self::List(1) => write!(f, "a list of 1 node"),
             Self::List(nodes) => write!(f, "a list of {nodes} nodes"),
             Self::Changing => write!(f, "a list of nodes that changes while it runs"),

@@ -348,6 +348,8 @@ fn every_shader_is_named_after_a_system_an_element_or_a_material_or_listed() {
             "mod",
             "kinds",
             "registry",
+            "repeat",
+            "rows",
             "host_forces",
             "node_shares",
             "node_slices",

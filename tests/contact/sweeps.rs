@@ -48,6 +48,11 @@ fn sweeps_are_listed_once_and_dispatched_as_often_as_the_plan_says() {
         let text = |sweeps: usize| blocks(&what.replace("SWEEPS", &sweeps.to_string()));
         for run in configurations() {
             let mut simulations = [1, 5].map(|sweeps| run.start(&text(sweeps)));
+            let on_gpu = run.options.backend == BackendChoice::Gpu;
+            if on_gpu {
+                let [once, often] = simulations.each_mut().map(dispatches);
+                assert_eq!(often - once, STEPS * 4 * a_sweep as u64, "{once} and {often} of {what}");
+            }
             let [once, often] =
                 simulations.each_mut().map(|simulation| simulation.explain(&Registry::default()).unwrap());
             let repeat = |explained: &Explanation| {
@@ -55,7 +60,7 @@ fn sweeps_are_listed_once_and_dispatched_as_often_as_the_plan_says() {
                 found.repeat.as_ref().map(|repeat| (repeat.times, repeat.what.len()))
             };
             assert_eq!((repeat(&once), repeat(&often)), (None, Some((5, a_sweep))), "{} {what}", run.name);
-            if run.options.backend != BackendChoice::Gpu {
+            if !on_gpu {
                 continue;
             }
             let [once, often] = [once, often].map(|explained| listed(&explained, system));
@@ -64,8 +69,6 @@ fn sweeps_are_listed_once_and_dispatched_as_often_as_the_plan_says() {
             assert!(once.iter().all(|(_, times)| *times == 1), "{once:?}");
             let repeated: Vec<&(String, usize)> = often.iter().filter(|(_, times)| *times == 5).collect();
             assert_eq!(repeated.len(), a_sweep, "{often:?}");
-            let [once, often] = simulations.each_mut().map(dispatches);
-            assert_eq!(often - once, STEPS * 4 * a_sweep as u64, "{once} and {often} of {what}");
         }
     }
 }

@@ -213,7 +213,9 @@ fn node_systems_say_for_which_nodes_they_are() {
     let loads = format!("loads=[Gravity(acceleration: (0, 0, -9.81)), {forces}]");
     let sucks = "suction=[(tool: \"tip\", pressure: 1000, reach: 0.01)]";
     let tip = "tools={\"tip\": (shape: Tube(inner: 0.005, outer: 0.006, length: 0.05), at: (0.05, 0.05, 0.3))}";
-    let sets = ["--set", &loads, "--set", tip, "--set", sucks];
+    // a set that is fixed needs nothing said anew
+    let moved = "constraints=[Prescribed(on: Set(\"z0\"), displacement: (0, 0, 1e-3), curve: Smooth(end: 0.1))]";
+    let sets = ["--set", &loads, "--set", tip, "--set", sucks, "--set", moved];
     let explain = [&["explain", "block.ron", "--backend", "cpu"], &sets[..]].concat();
     let json: serde_json::Value = serde_json::from_str(&place.done(&[&explain[..], &["--json"]].concat())).unwrap();
     let all = || serde_json::json!("All");
