@@ -13,17 +13,14 @@ fn accumulate_work(
     let first = 7u * node;
     let kept = vec3<f32>(work[first + 4u], work[first + 5u], work[first + 6u]);
     // in the middle of each step the balance is exact: from middle to middle, in the first step half of it
-    let last_step = select(before, kept, constrained);
-    let mean = 0.5 * (last_step + after);
+    let mean = 0.5 * (select(before, kept, constrained) + after);
     let along = step.work_factor * mean;
-    // strain has what was put into it along the ways that were gone: the same but after a change of Δt
-    let way = step.work_factor * (step.earlier_share * last_step + (1.0 - step.earlier_share) * after);
     let compensation = coefficient_of(node) * step.rate * mean * along;
-    let held = select(vec3<f32>(0.0), inner * way - outer * along + compensation, constrained);
+    let held = select(vec3<f32>(0.0), (inner - outer) * along + compensation, constrained);
     work[first] += dot(outer, along);
     work[first + 1u] += compensation.x + compensation.y + compensation.z;
     work[first + 2u] += held.x + held.y + held.z;
-    work[first + 3u] += dot(inner, way);
+    work[first + 3u] += dot(inner, along);
     let last = select(kept, after, constrained);
     work[first + 4u] = last.x;
     work[first + 5u] = last.y;
