@@ -123,7 +123,7 @@ pub(super) struct Newton<'a, 'w> {
     pub preconditioner: &'a mut dyn Preconditioner,
     pub report: &'a mut ImplicitSteps,
     pub sums: &'a Sums,
-    /// The length of the step (s); infinite in statics.
+    /// The length of the step (s); 1 in statics, where nothing has a velocity.
     pub h: f64,
 }
 
