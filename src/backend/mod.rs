@@ -25,6 +25,10 @@ pub trait Buffers {
     fn column(&mut self, entity: Entity, name: &'static str) -> BufferId;
     /// A read-only storage buffer of constants.
     fn constants(&mut self, label: String, bytes: &[u8]) -> BufferId;
+    /// Whether kernels will run with these buffers, and not only be described.
+    fn are_of_device(&self) -> bool {
+        true
+    }
     /// How many buffers a kernel may use.
     fn most_buffers(&self) -> kernel::MostBuffers {
         kernel::MostBuffers::DESKTOP

@@ -40,9 +40,10 @@ pub struct SceneFile {
     tree: Arc<Tree>,
 }
 
-/// How RON is read: an optional value may be written without `Some`.
+/// How RON is read: an optional value may be written without `Some`, and the fields of what a variant holds right in
+/// the variant's brackets.
 pub fn options() -> ron::Options {
-    ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME)
+    ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME | Extensions::UNWRAP_VARIANT_NEWTYPES)
 }
 
 impl SceneFile {

@@ -157,7 +157,7 @@ impl Relaxing {
 
     /// What Newton's iterations have taken, where they are tried.
     pub fn iterations(&self) -> Option<&ImplicitSteps> {
-        self.newton.as_ref().map(|newton| &newton.statics.report)
+        self.newton.as_ref().map(|newton| newton.statics.report())
     }
 
     /// What Newton's iterations are made of, where they are tried.

@@ -262,13 +262,6 @@ impl SurfaceContacts {
         words
     }
 
-    /// Notes the buffers that kernels have, where they are those of a device.
-    pub(super) fn note(&self, lists: BufferId, motion: BufferId, world: &mut World) {
-        if lists != BufferId::NONE && motion != BufferId::NONE {
-            world.insert_resource(OnDevice { lists, motion, ahead: 4 });
-        }
-    }
-
     /// How many steps the lists should hold for, where nodes have come nearer (m) since they were made, and go so far
     /// in a step (m).
     fn steps_ahead(&self, nearer: f64, largest: f64) -> f64 {
@@ -280,6 +273,18 @@ impl SurfaceContacts {
         }
         (left / a_step.max(f64::MIN_POSITIVE)).min(MOST_STEPS)
     }
+}
+
+/// Notes the buffers that kernels have, where they could be made.
+pub(super) fn note(lists: BufferId, motion: BufferId, world: &mut World) {
+    if lists != BufferId::NONE && motion != BufferId::NONE {
+        world.insert_resource(OnDevice { lists, motion, ahead: 4 });
+    }
+}
+
+/// Whether kernels run on a device.
+pub(super) fn is_on_device(world: &World) -> bool {
+    world.contains_resource::<OnDevice>()
 }
 
 /// What must be done before steps are submitted, and how many there may be at most.

@@ -5,7 +5,7 @@
 //! its loads (`surface_contact_push`), and what is kept of contacts (`surface_contact_touch`).
 
 use super::SurfaceContacts;
-use super::device::{MOTION_WORDS, SurfaceContact, find};
+use super::device::{MOTION_WORDS, SurfaceContact, find, is_on_device, note};
 use super::gather::OUT;
 use super::meet::{FACES, FREE, SLIDES, STICKS};
 use crate::backend::Buffers;
@@ -74,7 +74,11 @@ fn touch_constants() -> Fragment {
 
 /// See the module.
 pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
-    find(world);
+    // who only describes kernels leaves alone what those that run go by
+    let of_device = buffers.are_of_device();
+    if of_device || !is_on_device(world) {
+        find(world);
+    }
     let Some(contacts) = world.get_resource::<SurfaceContacts>() else { return Vec::new() };
     let whole = contacts.uniform(world.resource::<Clock>());
     let nodes = contacts.surface.nodes.len();
@@ -89,7 +93,9 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
         contacts: buffers.constants("contacts".into(), &vec![0; 4 * 24 * 2 * nodes]),
     };
     let contacts = contacts.clone();
-    contacts.note(shared.lists, shared.motion, world);
+    if of_device {
+        note(shared.lists, shared.motion, world);
+    }
     let of_bodies: Vec<(Entity, SurfaceContact)> = (0..)
         .zip(&contacts.bodies)
         .map(|(body, &entity)| {

@@ -301,3 +301,27 @@ fn passed_by(simulation: &mut Simulation, scene: &str) -> usize {
     let upper = rest.iter().zip(&mesh.points).filter(|(rest, _)| rest.z > 1e-3);
     upper.filter(|(_, place)| locator.holds(**place + DVec3::Z * 2e-4).is_some()).count()
 }
+
+/// Who asks what runs leaves it alone: on a GPU its lists of what may be near what, and where they lie.
+#[test]
+fn a_run_that_is_explained_goes_on_as_if_it_were_not() {
+    for run in configurations() {
+        let block = "mesh: Box(size: (0.02, 0.02, 0.02), cells: (2, 2, 2)), material: \"m\"";
+        let text = format!(
+            "(duration: 0.2, bodies: {{\"low\": ({block}), \"high\": ({block}, translate: (0.005, 0, 0.021))}},
+            materials: {{{TISSUE}}}, loads: [Gravity(acceleration: (0, 0, -9.81))],
+            constraints: [Fixed(body: \"low\", on: Set(\"z0\"))], contacts: [Between(bodies: (\"low\", \"high\"))])"
+        );
+        let [mut asked, mut left_alone] = [run.start(&text), run.start(&text)];
+        for time in [0.02, 0.05, 0.1] {
+            asked.advance_to(time).unwrap();
+            left_alone.advance_to(time).unwrap();
+            asked.explain(&Registry::default()).unwrap();
+            if run.precision == Precision::F32 {
+                asked.explain_on_gpu(&Registry::default()).unwrap();
+            }
+        }
+        assert!(force(&mut asked, "high").z > 0.0, "{}: they do not touch", run.name);
+        assert!(bits(&mut asked, &["low", "high"]) == bits(&mut left_alone, &["low", "high"]), "{}", run.name);
+    }
+}

@@ -120,6 +120,10 @@ impl Buffers for Counter<'_> {
         self.composer.compose(kernel)
     }
 
+    fn are_of_device(&self) -> bool {
+        false
+    }
+
     fn most_buffers(&self) -> MostBuffers {
         self.limits.map_or(MostBuffers::DESKTOP, |limits| limits.buffers)
     }

@@ -7,7 +7,7 @@ mod differences;
 mod equation;
 mod formula;
 mod free_motions;
-mod in_use;
+mod iterations;
 mod kept;
 mod newton;
 mod preconditioner;
@@ -33,7 +33,7 @@ impl Simulation {
     /// What implicit steps have taken so far, and in a static analysis Newton's iterations to equilibrium; `None` where
     /// there are neither.
     pub fn implicit_steps(&self) -> Option<&ImplicitSteps> {
-        let of_steps = self.solver.implicit().map(|implicit| &implicit.report);
+        let of_steps = self.solver.implicit().map(Implicit::report);
         of_steps.or_else(|| self.solver.relaxing()?.iterations())
     }
 

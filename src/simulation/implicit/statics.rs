@@ -2,17 +2,13 @@
 
 use super::super::ScheduledPass;
 use super::super::explain::SolverInUse;
-use super::axes::{Axes, Motion};
+use super::axes::Axes;
 use super::formula::Formula;
 use super::free_motions::{FreeMotion, free_motions};
-use super::in_use::Parts;
-use super::kept::Kept;
+use super::iterations::Iterations;
 use super::newton::{Found, Lost, Newton, Settings, Workspace};
-use super::preconditioner::{Preconditioner, of_name};
 use super::report::ImplicitSteps;
-use super::sums::Sums;
 use super::trial::Trial;
-use crate::backend::cpu::Cpu;
 use crate::components::*;
 use crate::error::Error;
 use crate::scene::schema;
@@ -28,14 +24,8 @@ const UNBALANCED: f64 = 1e-5;
 
 /// What seeks equilibrium.
 pub(in crate::simulation) struct Statics {
-    settings: Settings,
-    preconditioner: Box<dyn Preconditioner>,
     axes: Axes,
-    motion: Motion,
-    space: Workspace,
-    kept: Kept,
-    sums: Sums,
-    pub report: ImplicitSteps,
+    iterations: Iterations,
 }
 
 /// What came of it.
@@ -63,50 +53,42 @@ impl Statics {
     /// What seeks the equilibrium of bodies to a residual of a tolerance.
     pub fn new(tolerance: f64, world: &mut World) -> Self {
         let axes = Axes::of(world);
-        let mut space = Workspace::default();
-        space.resize(axes.len());
-        Self {
-            settings: Settings { formula: Formula::of_rest(), newton: MOST_ITERATIONS, tolerance, budget: None },
-            preconditioner: of_name(schema::Preconditioner::TwoLevel),
-            axes,
-            motion: Motion::default(),
-            space,
-            kept: Kept::default(),
-            sums: Sums::on(world.resource::<Cpu>()),
-            report: ImplicitSteps::default(),
-        }
+        let settings = Settings { formula: Formula::of_rest(), newton: MOST_ITERATIONS, tolerance, budget: None };
+        let iterations = Iterations::new(settings, schema::Preconditioner::TwoLevel, &axes, world);
+        Self { axes, iterations }
+    }
+
+    /// What they took.
+    pub fn report(&self) -> &ImplicitSteps {
+        &self.iterations.report
     }
 
     /// What it is made of.
     pub fn in_use(&mut self, world: &mut World, passes: &[ScheduledPass]) -> SolverInUse {
-        let Settings { newton, tolerance, .. } = self.settings;
-        let Self { settings, axes, motion, space, preconditioner, kept, .. } = self;
-        let parts = Parts { settings, axes, motion, space, preconditioner: &mut **preconditioner, kept };
+        let Settings { newton, tolerance, .. } = self.iterations.settings;
         let first = format!(
             "rest by at most {newton} Newton iterations, to a residual of {tolerance}; pseudo-steps where they do not arrive"
         );
-        parts.in_use(first, world, passes)
+        self.iterations.in_use(first, &self.axes, world, passes)
     }
 
     /// The residual at which it counts as found.
     pub fn tolerance(&self) -> f64 {
-        self.settings.tolerance
+        self.iterations.settings.tolerance
     }
 
     /// Seeks equilibrium under loads and motions in full, from where bodies are.
     pub fn attempt(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<Attempt, Error> {
         let started = Instant::now();
-        self.kept.keep(world);
+        self.iterations.kept.keep(world);
         world.insert_resource(TrialForces { trying: true, ..TrialForces::default() });
-        let before = self.report.newton_iterations;
+        let before = self.iterations.report.newton_iterations;
         let found = self.find(world, passes, before);
         world.remove_resource::<TrialForces>();
         if !matches!(found, Ok(Attempt::Found(_))) {
-            self.kept.put_back(world, |_| true);
+            self.iterations.kept.put_back(world, |_| true);
         }
-        self.report.steps += 1;
-        self.report.preconditioner_bytes = self.preconditioner.holds().1.iter().map(|(_, bytes)| bytes).sum();
-        self.report.longest_step = self.report.longest_step.max(started.elapsed().as_secs_f64());
+        self.iterations.end_step(started);
         match found {
             Ok(attempt) => Ok(attempt),
             Err(Lost::Because(_)) => Ok(Attempt::NotFound),
@@ -117,25 +99,17 @@ impl Statics {
     fn find(&mut self, world: &mut World, passes: &mut [ScheduledPass], before: u64) -> Result<Attempt, Lost> {
         let clock = *world.resource::<Clock>();
         let Some(relaxation) = clock.relaxation else { return Ok(Attempt::NotFound) };
-        let mut trial = Trial { world, passes, axes: &self.axes, step: clock.step, count: 0, elsewhere: false };
-        self.axes.read(trial.world, &mut self.motion);
+        let Self { axes, iterations } = self;
+        let mut trial = Trial { world, passes, axes, step: clock.step, count: 0, elsewhere: false };
+        let Iterations { motion, space, .. } = &mut *iterations;
+        axes.read(trial.world, motion);
         trial.world.resource_mut::<Signals>().approach(relaxation.end, [1.0, 1.0]);
         trial.run(|phase| phase == Phase::Boundary)?;
-        super::step::held_axes(trial.world, &self.axes, &self.motion, &mut self.space.to_go);
-        let space = &mut self.space;
+        super::step::held_axes(trial.world, axes, motion, &mut space.to_go);
         space.inertia.fill(0.0);
         space.constant.fill(0.0);
-        space.w.copy_from_slice(&self.motion.u);
-        let mut newton = Newton {
-            trial,
-            settings: self.settings,
-            motion: &self.motion,
-            space,
-            preconditioner: &mut *self.preconditioner,
-            report: &mut self.report,
-            sums: &self.sums,
-            h: 1.0,
-        };
+        space.w.copy_from_slice(&motion.u);
+        let mut newton = iterations.newton(trial, 1.0);
         let motions = free_motions(newton.trial.world, newton.trial.axes, &newton.motion.free);
         let not_held = not_held(&motions, &mut newton)?;
         if !not_held.is_empty() {
@@ -148,19 +122,18 @@ impl Statics {
             _ => None,
         };
         let mut trial = newton.trial;
-        self.report.passes += trial.count;
-        self.report.most_passes = self.report.most_passes.max(trial.count);
+        iterations.count(trial.count);
         found?;
         let Some((remaining, unstable)) = rest else { return Ok(Attempt::NotFound) };
-        let Workspace { w, net, step, acceleration, .. } = &mut self.space;
+        let Workspace { w, net, step, acceleration, .. } = &mut iterations.space;
         trial.forces(w, None, net)?;
         step.fill(0.0);
         acceleration.fill(0.0);
-        self.axes.arrive(trial.world, w, step, acceleration);
+        axes.arrive(trial.world, w, step, acceleration);
         Ok(Attempt::Found(Rest {
             remaining,
-            displaced: self.sums.norm(w),
-            iterations: self.report.newton_iterations - before,
+            displaced: iterations.sums.norm(w),
+            iterations: iterations.report.newton_iterations - before,
             unstable,
         }))
     }

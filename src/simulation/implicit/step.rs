@@ -4,15 +4,12 @@ use super::super::ScheduledPass;
 use super::super::explain::SolverInUse;
 use super::axes::{Axes, Motion};
 use super::formula::Formula;
-use super::in_use::Parts;
+use super::iterations::Iterations;
 use super::kept::Kept;
-use super::newton::{Found, Lost, Newton, Settings, Workspace};
-use super::preconditioner::{Preconditioner, of_name};
+use super::newton::{Found, Lost, Settings, Workspace};
 use super::report::ImplicitSteps;
-use super::sums::Sums;
 use super::trial::Trial;
 use super::work::Works;
-use crate::backend::cpu::Cpu;
 use crate::components::*;
 use crate::error::{Criterion, Error};
 use crate::observation::Observer;
@@ -26,15 +23,9 @@ const WARNED: f64 = 0.5;
 
 /// What takes implicit steps.
 pub(in crate::simulation) struct Implicit {
-    settings: Settings,
-    preconditioner: Box<dyn Preconditioner>,
     axes: Axes,
-    motion: Motion,
-    space: Workspace,
+    iterations: Iterations,
     works: Option<Works>,
-    kept: Kept,
-    sums: Sums,
-    pub report: ImplicitSteps,
 }
 
 impl Implicit {
@@ -47,24 +38,19 @@ impl Implicit {
             return None;
         }
         let axes = Axes::of(world);
-        let mut space = Workspace::default();
-        space.resize(axes.len());
-        Some(Self {
-            settings: Settings { formula: Formula::of(scheme), newton, tolerance, budget },
-            preconditioner: of_name(preconditioner),
-            axes,
-            motion: Motion::default(),
-            space,
-            works: scene.output.energies_every.map(|_| Works::default()),
-            kept: Kept::default(),
-            sums: Sums::on(world.resource::<Cpu>()),
-            report: ImplicitSteps::default(),
-        })
+        let settings = Settings { formula: Formula::of(scheme), newton, tolerance, budget };
+        let iterations = Iterations::new(settings, preconditioner, &axes, world);
+        Some(Self { axes, iterations, works: scene.output.energies_every.map(|_| Works::default()) })
+    }
+
+    /// What they took.
+    pub fn report(&self) -> &ImplicitSteps {
+        &self.iterations.report
     }
 
     /// What it is made of.
     pub fn in_use(&mut self, scheme: ImplicitScheme, world: &mut World, passes: &[ScheduledPass]) -> SolverInUse {
-        let Settings { newton, tolerance, .. } = self.settings;
+        let Settings { newton, tolerance, .. } = self.iterations.settings;
         let scheme = match scheme {
             ImplicitScheme::Euler => "implicit Euler".into(),
             ImplicitScheme::GeneralizedAlpha { high_frequencies } => {
@@ -75,9 +61,7 @@ impl Implicit {
             1 => format!("one Newton iteration, solved to {tolerance} of its residual"),
             _ => format!("at most {newton} Newton iterations, to a residual of {tolerance} of all forces"),
         };
-        let Self { settings, axes, motion, space, preconditioner, kept, .. } = self;
-        let parts = Parts { settings, axes, motion, space, preconditioner: &mut **preconditioner, kept };
-        parts.in_use(format!("{scheme}: {iterations}"), world, passes)
+        self.iterations.in_use(format!("{scheme}: {iterations}"), &self.axes, world, passes)
     }
 
     /// Takes the step that begins at the clock's, up to the loads at its end. Where that is not found, all stands as
@@ -85,20 +69,18 @@ impl Implicit {
     pub fn step(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<(), Error> {
         let started = Instant::now();
         let clock = *world.resource::<Clock>();
-        self.kept.keep(world);
+        self.iterations.kept.keep(world);
         let found = self.find(world, passes, &clock);
         world.resource_mut::<Clock>().step = clock.step;
         set_trying(world, false);
         if found.is_err() {
-            self.kept.put_back(world, |_| true);
+            self.iterations.kept.put_back(world, |_| true);
         }
         let left = found.map_err(|lost| match lost {
             Lost::Error(error) => error,
             Lost::Because(what) => not_found(world, what),
         })?;
-        self.report.steps += 1;
-        self.report.preconditioner_bytes = self.preconditioner.holds().1.iter().map(|(_, bytes)| bytes).sum();
-        self.report.longest_step = self.report.longest_step.max(started.elapsed().as_secs_f64());
+        self.iterations.end_step(started);
         if left > WARNED {
             warn_of_residual(world, left);
         }
@@ -107,54 +89,46 @@ impl Implicit {
 
     /// Finds the end of the step, and takes it. Gives the share of the residual that is left.
     fn find(&mut self, world: &mut World, passes: &mut [ScheduledPass], clock: &Clock) -> Result<f64, Lost> {
-        let (h, formula) = (clock.time_step, self.settings.formula);
-        let mut trial = Trial { world, passes, axes: &self.axes, step: clock.step, count: 0, elsewhere: false };
-        self.axes.read(trial.world, &mut self.motion);
+        let Self { axes, iterations, works } = self;
+        let (h, formula) = (clock.time_step, iterations.settings.formula);
+        let mut trial = Trial { world, passes, axes, step: clock.step, count: 0, elsewhere: false };
+        let Iterations { motion, space, .. } = &mut *iterations;
+        axes.read(trial.world, motion);
         if clock.step == 0 {
-            begin(&mut trial, &mut self.motion, &mut self.space.net, &formula)?;
+            begin(&mut trial, motion, &mut space.net, &formula)?;
         }
         let times = [clock.time_at(clock.step), clock.time_at(clock.step + 1)];
         trial.world.resource_mut::<Signals>().evaluate((times[1], times[1]), times);
         trial.run(|phase| phase == Phase::Boundary)?;
-        if let Some(works) = &mut self.works {
-            works.begin(trial.world, &self.axes);
+        if let Some(works) = works {
+            works.begin(trial.world, axes);
         }
-        let space = &mut self.space;
         trial.net(&mut space.net);
-        held_axes(trial.world, &self.axes, &self.motion, &mut space.to_go);
+        held_axes(trial.world, axes, motion, &mut space.to_go);
         for axis in 0..space.w.len() {
-            (space.inertia[axis], space.constant[axis]) = self.motion.equation(&formula, h, axis, space.net[axis]);
-            space.w[axis] = self.motion.predicted(axis, h);
+            (space.inertia[axis], space.constant[axis]) = motion.equation(&formula, h, axis, space.net[axis]);
+            space.w[axis] = motion.predicted(axis, h);
         }
         // loads are those of the end
         trial.world.resource_mut::<Clock>().step += 1;
         set_trying(trial.world, true);
-        let mut newton = Newton {
-            trial,
-            settings: self.settings,
-            motion: &self.motion,
-            space,
-            preconditioner: &mut *self.preconditioner,
-            report: &mut self.report,
-            sums: &self.sums,
-            h,
-        };
+        let mut newton = iterations.newton(trial, h);
         let left = newton.solve();
         let mut trial = newton.trial;
         if left.is_ok() {
-            keep_forces(&mut trial, &self.kept, &mut self.space)?;
-            let Workspace { w, step, acceleration, .. } = &mut self.space;
+            let Iterations { motion, space, kept, .. } = &mut *iterations;
+            keep_forces(&mut trial, kept, space)?;
+            let Workspace { w, step, acceleration, .. } = space;
             for axis in 0..w.len() {
-                let (velocity, of_axis) = self.motion.arrival(&formula, axis, h, w[axis]);
+                let (velocity, of_axis) = motion.arrival(&formula, axis, h, w[axis]);
                 (step[axis], acceleration[axis]) = (h * velocity, of_axis);
             }
-            self.axes.arrive(trial.world, w, step, acceleration);
-            if let Some(works) = &mut self.works {
-                works.end(trial.world, &self.axes, &self.motion, w, step, h);
+            axes.arrive(trial.world, w, step, acceleration);
+            if let Some(works) = works {
+                works.end(trial.world, axes, motion, w, step, h);
             }
         }
-        self.report.passes += trial.count;
-        self.report.most_passes = self.report.most_passes.max(trial.count);
+        iterations.count(trial.count);
         left.map(|Found { left, .. }| left)
     }
 }

@@ -39,8 +39,8 @@ fn the_answer_has_the_differences_between_meshes_their_order_and_a_bound() {
 
 #[test]
 fn where_time_allows_two_meshes_only_they_bound_the_error() {
-    // a mesh takes 6.4 ms times the fourth power of its fineness: no time for ×2
-    let study = run(&mut MadeUp::default(), 0.05);
+    // a mesh takes 6.4 s times the fourth power of its fineness, it says: no time for ×2
+    let study = run(&mut MadeUp { seconds: 1e-3, ..MadeUp::default() }, 50.0);
     let answer = &study.estimates[0];
     assert_eq!((meshes(answer), answer.order), (["×1/2", "×1"].map(String::from).to_vec(), None));
     assert!(answer.at_most >= 0.0401 / 1.0401 && answer.at_most < 0.4, "{answer:?}");

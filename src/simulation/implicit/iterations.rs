@@ -1,0 +1,111 @@
+//! What Newton's iterations go on from, in implicit steps and to equilibrium alike: what is the same from one solve to the
+//! next.
+
+use super::super::ScheduledPass;
+use super::super::explain::SolverInUse;
+use super::axes::{Axes, Motion};
+use super::kept::Kept;
+use super::newton::{Newton, Settings, Workspace};
+use super::preconditioner::{Operator, Preconditioner, of_name};
+use super::report::ImplicitSteps;
+use super::sums::Sums;
+use super::trial::{Trial, is_of_forces};
+use crate::backend::cpu::Cpu;
+use crate::components::Clock;
+use crate::scene::schema;
+use bevy_ecs::prelude::*;
+use std::time::Instant;
+
+/// Everything of a solver but its axes, which trials look at meanwhile.
+pub(super) struct Iterations {
+    pub settings: Settings,
+    pub preconditioner: Box<dyn Preconditioner>,
+    pub motion: Motion,
+    pub space: Workspace,
+    pub kept: Kept,
+    pub sums: Sums,
+    pub report: ImplicitSteps,
+}
+
+impl Iterations {
+    /// None taken yet.
+    pub fn new(settings: Settings, preconditioner: schema::Preconditioner, axes: &Axes, world: &World) -> Self {
+        let mut space = Workspace::default();
+        space.resize(axes.len());
+        Self {
+            settings,
+            preconditioner: of_name(preconditioner),
+            motion: Motion::default(),
+            space,
+            kept: Kept::default(),
+            sums: Sums::on(world.resource::<Cpu>()),
+            report: ImplicitSteps::default(),
+        }
+    }
+
+    /// Those of a solve, in a step of a length (s).
+    pub fn newton<'a, 'w>(&'a mut self, trial: Trial<'w>, h: f64) -> Newton<'a, 'w> {
+        Newton {
+            trial,
+            settings: self.settings,
+            motion: &self.motion,
+            space: &mut self.space,
+            preconditioner: &mut *self.preconditioner,
+            report: &mut self.report,
+            sums: &self.sums,
+            h,
+        }
+    }
+
+    /// Notes how often a solve took forces.
+    pub fn count(&mut self, passes: u64) {
+        self.report.passes += passes;
+        self.report.most_passes = self.report.most_passes.max(passes);
+    }
+
+    /// Notes a step that began then.
+    pub fn end_step(&mut self, started: Instant) {
+        self.report.steps += 1;
+        self.report.preconditioner_bytes = self.preconditioner.holds().1.iter().map(|(_, bytes)| bytes).sum();
+        self.report.longest_step = self.report.longest_step.max(started.elapsed().as_secs_f64());
+    }
+
+    /// What it does in words after `first`, and what it holds at the present state, for `explain`. The first step begins
+    /// with the same.
+    pub fn in_use(&mut self, first: String, axes: &Axes, world: &mut World, passes: &[ScheduledPass]) -> SolverInUse {
+        let h = world.resource::<Clock>().time_step;
+        let Self { settings, motion, space, preconditioner, kept, .. } = self;
+        axes.read(world, motion);
+        kept.keep(world);
+        let formula = &settings.formula;
+        for axis in 0..axes.len() {
+            let is_free = motion.free[axis];
+            space.inertia[axis] =
+                if is_free { formula.inertia(h, motion.mass[axis], motion.damping[axis]) } else { 0.0 };
+        }
+        preconditioner.follow(&Operator {
+            world,
+            bodies: &axes.bodies,
+            free: &motion.free,
+            inertia: &space.inertia,
+            stiffness: formula.stiffness(),
+        });
+        let (made_of, mut held) = preconditioner.holds();
+        let forces = passes.iter().filter(|pass| is_of_forces(pass.phase)).map(|pass| pass.name.as_str());
+        let forces: Vec<&str> = forces.collect();
+        let mut of = vec![
+            first,
+            format!(
+                "a pass is {}, at trial displacements: one for each residual and for each product",
+                forces.join(", ")
+            ),
+            format!("conjugate gradients are preconditioned with {made_of}"),
+        ];
+        if let Some(budget) = settings.budget {
+            of.push(format!("at most {budget} passes a step, and two more"));
+        }
+        held.push(("vectors over all axes", (axes.bytes() + motion.bytes() + space.bytes()) as u64));
+        held.push(("columns as they were before a step", kept.bytes() as u64));
+        SolverInUse { of, held }
+    }
+}
