@@ -1,10 +1,12 @@
 //! Bodies against each other and themselves: closed forms of impact and rest, momentum, energy, bits.
 
+use crate::bits::bits;
 use crate::configurations::{ELEMENTS, configurations, near};
 use glam::DVec3;
 use sinew::Simulation;
-use sinew::components::{ContactForce, DisplacementIncrement, MEETING_NUMBERS, SurfaceTouch};
+use sinew::components::{ContactForce, DisplacementIncrement, MEETING_NUMBERS, Precision, SurfaceTouch};
 use sinew::mesh::{Locator, Mesh};
+use sinew::systems::Registry;
 
 const TISSUE: &str = "\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))";
 
@@ -222,9 +224,9 @@ fn bits_do_not_depend_on_threads_lists_or_pauses() {
                 translate: (0.012, 0.008, 0.032), velocity: (-0.1, 0.02, -0.8))},
         materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))},
         contacts: [Between(bodies: (\"a\", \"b\"), friction: 0.3)])";
-    for precision in [sinew::components::Precision::F32, sinew::components::Precision::F64] {
+    for precision in [Precision::F32, Precision::F64] {
         let start = |threads: usize, text: &str| crate::bits::start(text, precision, threads);
-        let bits = |simulation: &mut Simulation| crate::bits::bits(simulation, &["a", "b"]);
+        let bits = |simulation: &mut Simulation| bits(simulation, &["a", "b"]);
         let mut one = start(1, scene);
         one.advance(400).unwrap();
         assert!(force(&mut one, "b").length() > 0.0, "they touch");
@@ -317,7 +319,7 @@ fn a_run_that_is_explained_goes_on_as_if_it_were_not() {
             asked.advance_to(time).unwrap();
             left_alone.advance_to(time).unwrap();
             asked.explain(&Registry::default()).unwrap();
-            if run.precision == Precision::F32 {
+            if run.options.precision == Precision::F32 {
                 asked.explain_on_gpu(&Registry::default()).unwrap();
             }
         }

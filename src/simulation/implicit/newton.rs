@@ -14,7 +14,8 @@ use crate::error::Error;
 
 /// Of a linear system the residual that is left, at most and at least.
 const FORCING: [f64; 2] = [0.1, 0.01];
-/// What the work of the residual along a direction must fall to.
+/// What the work of the residual along a direction must fall to where all of the direction is gone; of a share of it, it
+/// is asked for that share of the fall, or directions along which work falls as the tangent says were refused.
 const DESCENT: f64 = 0.9;
 /// How often a direction is halved.
 const MOST_HALVINGS: u32 = 12;
@@ -346,7 +347,8 @@ impl Newton<'_, '_> {
                 let now = self.residual();
                 let work = self.sums.dot(&self.space.p, &self.space.g);
                 let size_of_work = if way.gives_way { work.max(0.0) } else { work.abs() };
-                let descends = size_of_work <= DESCENT * way.along.abs() || self.settings.newton == 1 || now <= enough;
+                let most = (1.0 - (1.0 - DESCENT) * share) * way.along.abs();
+                let descends = size_of_work <= most || self.settings.newton == 1 || now <= enough;
                 if now.is_finite() && descends {
                     self.space.to_go.iter_mut().for_each(|left| *left *= 1.0 - share);
                     *size = now;
