@@ -226,24 +226,24 @@ fn bits_do_not_depend_on_threads_lists_or_pauses() {
         contacts: [Between(bodies: (\"a\", \"b\"), friction: 0.3)])";
     for precision in [Precision::F32, Precision::F64] {
         let start = |threads: usize, text: &str| crate::bits::start(text, precision, threads);
-        let bits = |simulation: &mut Simulation| bits(simulation, &["a", "b"]);
+        let found = |simulation: &mut Simulation| bits(simulation, &["a", "b"]);
         let mut one = start(1, scene);
         one.advance(400).unwrap();
         assert!(force(&mut one, "b").length() > 0.0, "they touch");
-        let wanted = bits(&mut one);
+        let wanted = found(&mut one);
         for threads in [2, 3] {
             let mut other = start(threads, scene);
             other.advance(400).unwrap();
-            assert!(bits(&mut other) == wanted, "{threads} threads, {precision:?}");
+            assert!(found(&mut other) == wanted, "{threads} threads, {precision:?}");
         }
         let mut unfused = start(1, &scene.replace("duration", "fuse: false, duration"));
         unfused.advance(400).unwrap();
-        assert!(bits(&mut unfused) == wanted, "not fused, {precision:?}");
+        assert!(found(&mut unfused) == wanted, "not fused, {precision:?}");
         for skin in [1e-9, 3.0] {
             let mut other = start(1, scene);
             other.world_mut().resource_mut::<sinew::systems::SurfaceContacts>().skin = skin;
             other.advance(400).unwrap();
-            assert!(bits(&mut other) == wanted, "skin {skin}, {precision:?}");
+            assert!(found(&mut other) == wanted, "skin {skin}, {precision:?}");
         }
         let mut paused = start(1, scene);
         paused.advance(333).unwrap();
@@ -251,11 +251,11 @@ fn bits_do_not_depend_on_threads_lists_or_pauses() {
         paused.advance(40).unwrap();
         paused.restore(&kept).unwrap();
         paused.advance(67).unwrap();
-        assert!(bits(&mut paused) == wanted, "taken back, {precision:?}");
+        assert!(found(&mut paused) == wanted, "taken back, {precision:?}");
         let mut resumed = start(1, scene);
         resumed.restore(&kept).unwrap();
         resumed.advance(67).unwrap();
-        assert!(bits(&mut resumed) == wanted, "resumed, {precision:?}");
+        assert!(found(&mut resumed) == wanted, "resumed, {precision:?}");
     }
 }
 
