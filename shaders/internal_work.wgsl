@@ -4,11 +4,11 @@
 var<private> internal_work: f32;
 var<workgroup> internal_work_parts: array<f32, INVOCATIONS>;
 
-// Forces at the beginning of the step along the mean of the steps before and after, each as long as it was: what is
-// counted of an elastic force is then what it stores, across changes of Δt, too.
+// Forces at the beginning of the step along the mean of the steps before and after; counted by the
+// time between the middles of both.
 fn add_internal_work(node: u32, before: vec3<f32>, after: vec3<f32>, constrained: vec3<bool>, inner: vec3<f32>) {
     let last = select(before, step_before(node), constrained);
-    internal_work += step.work_factor * dot(inner, step.earlier_share * last + (1.0 - step.earlier_share) * after);
+    internal_work += 0.5 * step.work_factor * dot(inner, last + after);
 }
 
 // The same number, in a way that no compiler can look through.

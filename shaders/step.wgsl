@@ -10,7 +10,7 @@ struct Step {
     relaxation: f32, // a = cΔt/2 of a static analysis
     work_factor: f32, // share of a step's work that is counted: the time between the middles over Δt
     observed: u32, // 1 in steps after which somebody may look at forces
-    earlier_share: f32, // of the step before in the time of both: ½ but after a change of Δt
+    reserved: u32,
     time: f32, // at the beginning of the step (s)
     time_step: f32, // Δt (s)
     signals: array<vec4<f32>, SIGNALS>,

@@ -27,8 +27,8 @@ pub struct Step {
     pub work_factor: f32,
     /// 1 in steps after which somebody may look at forces, else 0: kernels need not leave them in memory.
     pub observed: u32,
-    /// Share of the step before in the time of both (see [`Clock::earlier_share`]).
-    pub earlier_share: f32,
+    /// Unused: slots for signals begin at a multiple of 16 bytes.
+    pub reserved: u32,
     /// Time at the beginning of the step (s).
     pub time: f32,
     /// Δt (s).
@@ -45,7 +45,7 @@ uniform!(Step {
     relaxation,
     work_factor,
     observed,
-    earlier_share,
+    reserved,
     time,
     time_step
 });
@@ -66,7 +66,7 @@ impl Step {
             relaxation: damping as f32,
             work_factor: (between / dt) as f32,
             observed: 1,
-            earlier_share: clock.earlier_share() as f32,
+            reserved: 0,
             time: clock.time() as f32,
             time_step: dt as f32,
         }

@@ -64,14 +64,6 @@ impl Clock {
         }
     }
 
-    /// Share of the step before in the time of both: ½, after a change of Δt what it is then. Increments follow Δt, for
-    /// they stand for velocities; with the weights of this and of the rest their mean is that of the ways that were gone.
-    #[doc(hidden)]
-    pub fn earlier_share(&self) -> f64 {
-        let changed = self.step == self.since.0 && self.step > 0;
-        if changed { self.before / (self.before + self.time_step) } else { 0.5 }
-    }
-
     /// The times (s) from the middle of the step before to the middle of a step, which must not lie before the last
     /// change of Δt: over them forces at its beginning change velocities. The first such window begins with the motion.
     #[doc(hidden)]

@@ -47,8 +47,7 @@ columns! {
     FirstNonFinite(Vec<u32>) = "first_non_finite", State, Other, in "node_diagnostics";
     /// Work against internal forces since the start (J), in f32 whatever the run's precision: two numbers for each
     /// [`GROUP_ROWS`] nodes and two more, a sum over nodes that move together and what rounding has left out of it.
-    /// Along the ways that nodes went, so that it is what strain has stored: in the first step after a change of Δt that is
-    /// not what velocities, and the work in [`Work`] with them, say. Exists in a motion whose energy is guarded.
+    /// Exists in a motion without [`Work`] whose energy is guarded.
     InternalWork(Vec<f32>) = "internal_work", State, Other, in "node_diagnostics";
     /// Displacement of the last step along prescribed axes (m), which `boundary` has written over in
     /// [`DisplacementIncrement`], in f32 whatever the run's precision: a vector a node. Exists with [`InternalWork`] where

@@ -64,8 +64,15 @@ pub fn sample(world: &mut World) -> Result<Sample, Error> {
 
 /// Work against internal forces (J) of all bodies, as it is counted.
 fn internal_work(world: &mut World) -> Result<f64, Error> {
-    bring_to_host(world, |_, name| name == InternalWork::NAME)?;
-    Ok(world.query::<&InternalWork>().iter(world).map(InternalWork::total).sum())
+    bring_to_host(world, |_, name| name == InternalWork::NAME || name == Work::NAME)?;
+    let mut sum = 0.0;
+    for (guarded, work) in world.query::<(Option<&InternalWork>, Option<&Work>)>().iter(world) {
+        sum += guarded.map_or(0.0, InternalWork::total);
+        if let Some(work) = work {
+            sum += (0..work.len() / WORK_NUMBERS).map(|row| work.get(WORK_NUMBERS * row + 3)).sum::<f64>();
+        }
+    }
+    Ok(sum)
 }
 
 impl Sample {

@@ -64,9 +64,9 @@ fn a_plate_comes_off_beyond_the_holding_force() {
             let g = share * PRESSURE * PI * BORE * BORE / weight;
             let loads = format!(
                 "loads: [Gravity(acceleration: (0, 0, -{g}), curve: Smooth(start: 0.05, end: 0.15))],
-                constraints: [Fixed(on: All, axes: [X, Y])],"
+                constraints: [Fixed(on: All, axes: [X, Y])], integration: (safety: 0.3),"
             );
-            // sucked at once it would hit the tube
+            // sucked at once it would hit the tube, and waves of a few steps a period are counted to a few percent
             let mut simulation = run.start(&plate("Hex8", &loads, ", curve: Smooth(end: 0.04)"));
             simulation.advance_to(0.2).unwrap();
             let low = simulation.displacements("b").unwrap().iter().map(|u| u.z).fold(f64::INFINITY, f64::min);
@@ -109,10 +109,13 @@ fn an_open_mouth_leaks() {
 fn bared_faces_are_sucked_at_once() {
     for run in configurations() {
         let rest = ", delay: 0.005, curve: Smooth(end: 0.05)), (tool: \"tip\", pressure: 1, bore: 1e-9, reach: 1e-9";
-        let scene = plate("Hex8", GLUED, rest).replace("reach: 5e-4", "reach: 2.5e-3").replace(
-            "probes:",
-            "removal: [(on: Box(min: (0, 0, 0.002), max: (0.02, 0.02, 0.004)), when: At(0.1))], probes:",
-        );
+        // where faces change the force jumps: waves of a few steps a period are counted to a few percent
+        let scene = plate("Hex8", &format!("{GLUED} integration: (safety: 0.3),"), rest)
+            .replace("reach: 5e-4", "reach: 2.5e-3")
+            .replace(
+                "probes:",
+                "removal: [(on: Box(min: (0, 0, 0.002), max: (0.02, 0.02, 0.004)), when: At(0.1))], probes:",
+            );
         let mut simulation = run.start(&scene);
         // a check follows removal at once where both are in a tenth step
         simulation.advance_to(0.1).unwrap();

@@ -95,7 +95,6 @@ impl<T: SimdScalar> Task<'_, '_, T> {
                 .as_mut()
                 .map(|compensation| compensation.each_mut().map(|all| &mut all[numbers.clone()])),
             force: T::splat(simd, coefficients.force),
-            shares: coefficients.shares.map(|share| T::splat(simd, share)),
             non_finite: T::splat(simd, T::default()),
             internal_work: T::splat(simd, T::default()),
         };
@@ -134,11 +133,10 @@ impl<T: SimdScalar> Task<'_, '_, T> {
         for (row, axes) in (from..to).map(|row| (row, columns.axes[row])).filter(|&(_, axes)| axes != 0) {
             for at in (0..3).filter(|i| axes >> i & 1 == 1).map(|i| 3 * row + i) {
                 let last = columns.previous_prescribed.get(at).map_or(0.0, |&step| f64::from(step));
-                let [earlier, later] = coefficients.shares.map(T::to_f64);
-                internal_work += columns.internal[at].to_f64() * (earlier * last + later * columns.step[at].to_f64());
+                internal_work += columns.internal[at].to_f64() * (last + columns.step[at].to_f64());
             }
         }
-        (coefficients.work_factor.to_f64() * internal_work, finite)
+        (0.5 * coefficients.work_factor.to_f64() * internal_work, finite)
     }
 }
 
@@ -212,10 +210,9 @@ struct Chunk<'a, T: SimdScalar, S: Simd> {
     step: &'a mut [T],
     compensation: Option<[&'a mut [T]; 2]>,
     force: T::Vector<S>,
-    shares: [T::Vector<S>; 2],
     /// Not 0 where a displacement is not finite.
     non_finite: T::Vector<S>,
-    /// Internal forces times the mean of the ways that were gone, but along constrained axes.
+    /// Internal forces times twice the mean step, but along constrained axes.
     internal_work: T::Vector<S>,
 }
 
@@ -271,7 +268,6 @@ impl<T: SimdScalar, S: Simd> Chunk<'_, T, S> {
         store!(new, self.u);
         // what is no number stays none
         self.non_finite += new * zero;
-        let [earlier, later] = self.shares;
-        self.internal_work += if_free(inner * (earlier * before + later * after), zero);
+        self.internal_work += if_free(inner * (before + after), zero);
     }
 }

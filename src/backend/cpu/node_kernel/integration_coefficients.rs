@@ -18,8 +18,6 @@ pub struct IntegrationCoefficients<T> {
     pub rate: T,
     /// Share of a step's work that is counted, the time between the middles over Δt: 1, in the first step ½.
     pub work_factor: T,
-    /// Share of the step before in the time of both (see [`Clock::earlier_share`]), and what is left for this one.
-    pub shares: [T; 2],
     /// a of a static analysis, else 0.
     pub relaxation: T,
 }
@@ -36,7 +34,6 @@ impl<T: Scalar> IntegrationCoefficients<T> {
             after_first: T::from_f64(if first { 0.0 } else { 1.0 }),
             rate: T::from_f64(1.0 / dt),
             work_factor: T::from_f64(between / dt),
-            shares: [clock.earlier_share(), 1.0 - clock.earlier_share()].map(T::from_f64),
             relaxation: T::from_f64(damping),
         }
     }

@@ -90,8 +90,8 @@ pub(super) fn move_node<T: Scalar>(
     mut work: Option<&mut [T]>,
 ) -> f64 {
     let (zero, one) = (T::default(), T::from_f64(1.0));
-    let IntegrationCoefficients { force: force_factor, half_step, after_first, rate, relaxation, .. } = *coefficients;
-    let IntegrationCoefficients { work_factor, shares: [earlier, later], .. } = *coefficients;
+    let IntegrationCoefficients { force: force_factor, half_step, after_first, rate, work_factor, relaxation } =
+        *coefficients;
     let (mass, axes) = (node.mass, node.axes);
     if mass <= zero {
         sum.step.fill(zero);
@@ -117,9 +117,7 @@ pub(super) fn move_node<T: Scalar>(
             Some(previous) if constrained => T::from_f64(f64::from(previous[i])),
             _ => before,
         };
-        // along the ways that were gone: what is counted of an elastic force is what it stores
-        let way = work_factor * (earlier * last + later * step);
-        internal_work += internal * way;
+        internal_work += internal * (last + step);
         if let Some(work) = &mut work {
             // forces at the beginning of the step work along the mean of the steps before and after, in the first step
             // along half of it: so the balance of the scheme is exact in the middle of each step
@@ -135,5 +133,5 @@ pub(super) fn move_node<T: Scalar>(
             }
         }
     }
-    internal_work.to_f64()
+    0.5 * (work_factor * internal_work).to_f64()
 }

@@ -54,7 +54,6 @@ pub fn bouncing(trial: &mut Trial<'_>) -> Result<(), Error> {
         (_, true) => (10, 2_000),
         _ => (40, 20_000),
     };
-    // stable at .9, too: see the scene
     let mut simulation = trial.start(&["integration=(safety: 0.15)".into()])?;
     let weight = 9.81 * mass(&mut simulation, "body")?;
     simulation.advance(1)?;
