@@ -40,6 +40,9 @@ pub enum Error {
     /// Options that do not go together.
     #[error("{0}")]
     Options(String),
+    /// Something that the engine itself has put in place is not there, so that the step it is in is wrong.
+    #[error("a mistake of sinew's own: {0} is missing in the middle of a run; please report it with the scene")]
+    Broken(&'static str),
 }
 
 /// How far a run came whose GPU failed.
@@ -228,8 +231,7 @@ impl From<Diagnostics> for Error {
     }
 }
 
-/// Something that the engine itself has put in place is not there: in builds for debugging that ends the program with
-/// its name.
-pub(crate) fn missing(what: &str) {
-    debug_assert!(false, "a broken invariant: {what} is missing");
+/// Something that the engine itself has put in place is not there.
+pub(crate) fn missing(what: &'static str) -> Error {
+    Error::Broken(what)
 }

@@ -12,7 +12,7 @@ use crate::backend::step::{step_number, with_step};
 use crate::components::*;
 use crate::elements::Element;
 use crate::elements::{node_count, with_element_of};
-use crate::error::missing;
+use crate::error::{Error, missing};
 use crate::evaluation::ElementState;
 use crate::materials::FLATTEST;
 use crate::math::SimdScalar;
@@ -59,15 +59,14 @@ fn element_forces(
     mut trial: Option<ResMut<TrialForces>>,
     mut blocks: Query<BlockParts>,
     mut bodies: Query<(&Authoring, &Displacement, &mut ElementForce)>,
-) {
+) -> Result<(), Error> {
     // implicit steps take their forces at their end
     let noted = Clock { step: clock.step.saturating_sub(u64::from(trial.is_some())), ..*clock };
     let trying = trial.as_ref().is_some_and(|trial| trial.trying);
     for (authoring, displacement, mut force) in &mut bodies {
         for &entity in &authoring.blocks {
             let Ok(mut block) = blocks.get_mut(entity) else {
-                missing("a column of a body");
-                continue;
+                return Err(missing("a column of a body"));
             };
             let found = match &mut force.0 {
                 Reals::F32(force) => block.run::<f32>(&cpu, (displacement.slice(), 0), force, None, trying),
@@ -79,6 +78,7 @@ fn element_forces(
             }
         }
     }
+    Ok(())
 }
 
 impl BlockPartsItem<'_, '_> {

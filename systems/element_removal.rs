@@ -9,7 +9,7 @@ use crate::backend::step::with_step;
 use crate::components::*;
 use crate::elements::Element;
 use crate::elements::{mass_shares, with_element_of};
-use crate::error::missing;
+use crate::error::{Error, missing};
 use crate::evaluation::{BlockView, ElementState, add_nodal_masses, deactivate};
 use crate::math::lane_place;
 use crate::shader;
@@ -75,7 +75,7 @@ fn element_removal(
     others: Query<StayingBlock, Without<Alive>>,
     mut bodies: Query<BodyQuery>,
     loads: Query<(&SceneLoad, &OfBody)>,
-) {
+) -> Result<(), Error> {
     let is_due = clock.step.is_multiple_of(CRITERION_STEPS);
     let mut touched: Vec<Entity> = Vec::new();
     for (
@@ -95,8 +95,7 @@ fn element_removal(
     ) in &mut blocks
     {
         let Ok((_, displacement, step, axes, ..)) = bodies.get(block.body) else {
-            missing("a column of a body");
-            continue;
+            return Err(missing("a column of a body"));
         };
         let view = BlockView {
             block,
@@ -142,10 +141,9 @@ fn element_removal(
     }
     for body in touched {
         let Ok((authoring, .., mut mass, mut damping)) = bodies.get_mut(body) else {
-            missing("a column of a body");
-            continue;
+            return Err(missing("a column of a body"));
         };
-        recompute_masses(authoring, (&blocks, &others), &densities, &mut mass, damping.as_deref_mut());
+        recompute_masses(authoring, (&blocks, &others), &densities, &mut mass, damping.as_deref_mut())?;
         // elements of blocks that lose none are always there
         let alive = |(block, row): (u32, u32)| {
             let block = authoring.blocks.get(block as usize).and_then(|&block| blocks.get(block).ok());
@@ -157,6 +155,7 @@ fn element_removal(
             }
         }
     }
+    Ok(())
 }
 
 /// Rows for which something holds, ascending.
@@ -207,7 +206,7 @@ fn recompute_masses(
     materials: &Query<(&Density, Option<&Damping>)>,
     mass: &mut Mass,
     damping: Option<&mut DampingCoefficient>,
-) {
+) -> Result<(), Error> {
     let count = mass.len();
     let (mut masses, mut coefficients) = (vec![0.0; count], vec![0.0; count]);
     let parts = |&entity: &Entity| match blocks.get(entity) {
@@ -217,8 +216,7 @@ fn recompute_masses(
     };
     for (block, connectivity, shape) in authoring.blocks.iter().filter_map(parts) {
         let Ok((density, rate)) = materials.get(block.material) else {
-            missing("a column of a body");
-            continue;
+            return Err(missing("a column of a body"));
         };
         let rate = rate.map_or(0.0, |rate| rate.0);
         add_nodal_masses(block, connectivity, shape, density.0, rate, &mut masses, &mut coefficients);
@@ -227,6 +225,7 @@ fn recompute_masses(
     if let Some(damping) = damping {
         (0..count).for_each(|node| damping.set(node, coefficients[node]));
     }
+    Ok(())
 }
 
 #[derive(Clone, Copy, Debug)]

@@ -8,6 +8,7 @@ use super::repeat::Repeat;
 use super::system::{Phase, System};
 use crate::backend::cpu::IntegrationCoefficients;
 use crate::components::*;
+use crate::error::{Error, missing};
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
@@ -41,7 +42,7 @@ pub fn system() -> System {
 
 /// What corrects the forces.
 fn sweeps(world: &World) -> Option<Repeat> {
-    Repeat::times(world.get_resource::<Glue>()?.sweeps, &["forces of ties", "what they do to nodes"])
+    Repeat::several(world.get_resource::<Glue>()?.sweeps, &["forces of ties", "what they do to nodes"])
 }
 
 /// Whether no tissue of what is tied can go.
@@ -80,14 +81,14 @@ fn glue(
     mut work: Local<Work>,
     mut bodies: Query<TiedColumns>,
     blocks: Query<&Alive>,
-) {
+) -> Result<(), Error> {
     if glue.is_changed() {
         *work = Work::of(&glue);
     }
     match bodies.iter().next().map(|columns| columns.nodes.u.precision()) {
         Some(Precision::F32) => step::<f32>(&clock, &glue, &mut work, (&mut bodies, &blocks)),
         Some(Precision::F64) => step::<f64>(&clock, &glue, &mut work, (&mut bodies, &blocks)),
-        None => {}
+        None => Ok(()),
     }
 }
 
@@ -96,10 +97,10 @@ fn step<T: Scalar>(
     glue: &Glue,
     work: &mut Work,
     (bodies, blocks): (&mut Query<TiedColumns>, &Query<&Alive>),
-) {
+) -> Result<(), Error> {
     let coefficients = IntegrationCoefficients::<f64>::of(clock);
     if !work.place::<T>(glue, &coefficients, bodies) {
-        return crate::error::missing("a column of a body");
+        return Err(missing("a column of a body"));
     }
     for (number, tie) in glue.ties.iter().enumerate() {
         work.set.ties[number].holds = false;
@@ -136,6 +137,7 @@ fn step<T: Scalar>(
         }
     }
     work.push(glue, bodies);
+    Ok(())
 }
 
 fn state_of<'a>(tie: &TiedPoint, glue: &Glue, bodies: &'a mut Query<TiedColumns>) -> Option<Mut<'a, TieState>> {

@@ -4,7 +4,7 @@ use super::element_removal::CRITERION_STEPS;
 use super::system::{Phase, System};
 use crate::components::*;
 use crate::elements::node_count;
-use crate::error::missing;
+use crate::error::{Error, missing};
 use crate::evaluation::rest_volume;
 use crate::math::lane_place;
 use crate::mesh::{Cells, NO_PIECE};
@@ -49,14 +49,13 @@ fn island_removal(
     signals: Res<Signals>,
     mut bodies: Query<BodyQuery>,
     mut blocks: Query<BlockQuery>,
-) {
+) -> Result<(), Error> {
     for (removals, mut islands, mut intake, authoring, rest, displacement) in &mut bodies {
         let mut going: Vec<(u32, u32)> = Vec::new();
         {
             let of_body: Vec<_> = authoring.blocks.iter().filter_map(|&block| blocks.get(block).ok()).collect();
             if of_body.len() != authoring.blocks.len() {
-                missing("a column of a block");
-                continue;
+                return Err(missing("a column of a block"));
             }
             let is_there = |&(block, row): &(u32, u32)| {
                 let (.., alive, due) = &of_body[block as usize];
@@ -102,6 +101,7 @@ fn island_removal(
             }
         }
     }
+    Ok(())
 }
 
 impl Islands {

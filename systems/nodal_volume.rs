@@ -8,7 +8,7 @@ use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK, run_volumes};
 use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
 use crate::components::*;
 use crate::elements::Tet4NodalPressure;
-use crate::error::missing;
+use crate::error::{Error, missing};
 use crate::math::{LANES, Scalar, SimdScalar};
 use crate::shader;
 use bevy_ecs::prelude::*;
@@ -38,11 +38,10 @@ type BlockQuery<'a> = (
     &'a mut NodalVolumeChange,
 );
 
-fn nodal_volume(cpu: Res<Cpu>, mut blocks: Query<BlockQuery>, bodies: Query<&Displacement>) {
+fn nodal_volume(cpu: Res<Cpu>, mut blocks: Query<BlockQuery>, bodies: Query<&Displacement>) -> Result<(), Error> {
     for (block, connectivity, shape, corners, law, rounded, mut volumes, mut means) in &mut blocks {
         let Ok(displacement) = bodies.get(block.body) else {
-            missing("a column of a body");
-            continue;
+            return Err(missing("a column of a body"));
         };
         match (&mut volumes.0, &mut means.0, rounded) {
             (Reals::F32(volumes), Reals::F32(means), Some(law)) => {
@@ -68,6 +67,7 @@ fn nodal_volume(cpu: Res<Cpu>, mut blocks: Query<BlockQuery>, bodies: Query<&Dis
             _ => {}
         }
     }
+    Ok(())
 }
 
 /// θ of all nodes of a block, from displacements of its body's nodes (m).

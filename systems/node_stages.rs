@@ -65,6 +65,7 @@ pub(super) fn derived_stages<S: NodeSystem + serde::Serialize>(
         if !bytes.is_empty() {
             stage = stage.bind("parameters", buffers.uniform(format!("parameters of {name}"), &bytes));
         }
+        stage = S::READS_ELSEWHERE.iter().fold(stage, |stage, column| stage.reads_elsewhere(column));
         let declared = Fragment::new(format!("generated: what {name} touches"), declared);
         let stage = stage.own(declared).with_step(world).loaded(loaded);
         stages.push(match (S::SUMS_FORCES, S::MOVES_NODES) {

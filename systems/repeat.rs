@@ -16,7 +16,7 @@ pub struct Repeat {
 
 impl Repeat {
     /// So many times; `None` where that is once.
-    pub(crate) fn times(times: usize, what: &[&'static str]) -> Option<Self> {
+    pub(crate) fn several(times: usize, what: &[&'static str]) -> Option<Self> {
         (times > 1).then(|| Self { times, until: None, what: what.to_vec() })
     }
 

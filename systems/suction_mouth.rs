@@ -9,7 +9,7 @@ use crate::backend::block_kernel::BlockKernels;
 use crate::backend::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
 use crate::backend::step::with_step;
 use crate::components::*;
-use crate::error::missing;
+use crate::error::{Error, missing};
 use crate::shader;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -39,11 +39,10 @@ fn suction_mouth(
     mut all: Query<(&mut Suction, &OfBody)>,
     mut bodies: Query<BodyQuery>,
     blocks: Query<Option<&Alive>, With<Block>>,
-) {
+) -> Result<(), Error> {
     for (mut suction, body) in &mut all {
         let Ok((authoring, rest, displacement, mut marks, mut pressures)) = bodies.get_mut(body.0) else {
-            missing("a column of a body");
-            continue;
+            return Err(missing("a column of a body"));
         };
         let at = SUCTION_NUMBERS * suction.number;
         let is_due = clock.step.is_multiple_of(CRITERION_STEPS);
@@ -70,6 +69,7 @@ fn suction_mouth(
             suction.now = pressures.get(at);
         }
     }
+    Ok(())
 }
 
 /// By what share pressure comes nearer in a step (s) to what it goes to.
@@ -157,7 +157,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let mut seen: Vec<Entity> = Vec::new();
     for (suction, body) in all {
         let (Some(authoring), Some(rest)) = (world.get::<Authoring>(body), world.get::<RestPosition>(body)) else {
-            missing("a column of a body");
+            debug_assert!(false, "{}", missing("a column of a body"));
             continue;
         };
         if !seen.contains(&body) {

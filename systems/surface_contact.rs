@@ -17,6 +17,7 @@ use super::system::{Phase, System};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
 use crate::contact::{Lists, Near, Point, Shortlist, Stays, Surfaces, Tree};
+use crate::error::{Error, missing};
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
@@ -65,7 +66,7 @@ fn surfaces_stay(world: &World) -> bool {
 fn sweeps(world: &World) -> Option<Repeat> {
     let contacts = world.get_resource::<SurfaceContacts>()?;
     let what = ["normal forces", "what they do to nodes", "friction", "what it does to nodes"];
-    Repeat::times(contacts.sweeps, if contacts.has_friction() { &what } else { &what[..2] })
+    Repeat::several(contacts.sweeps, if contacts.has_friction() { &what } else { &what[..2] })
 }
 
 /// Whether the points that meet others are all nodes.
@@ -264,14 +265,14 @@ fn surface_contact(
     mut bodies: Query<(Entity, MeetingColumns)>,
     authorings: Query<&Authoring>,
     blocks: Query<Ref<Alive>>,
-) {
+) -> Result<(), Error> {
     let contacts = &mut *contacts;
     survey::follow(contacts, &mut bodies, &authorings, &blocks);
     let precision = bodies.iter().next().map(|(_, columns)| columns.nodes.u.precision());
     match precision {
         Some(Precision::F32) => step::<f32>(contacts, (&clock, &cpu), &mut bodies),
         Some(Precision::F64) => step::<f64>(contacts, (&clock, &cpu), &mut bodies),
-        None => {}
+        None => Ok(()),
     }
 }
 
@@ -279,17 +280,17 @@ fn step<T: Scalar>(
     contacts: &mut SurfaceContacts,
     (clock, cpu): (&Clock, &Cpu),
     bodies: &mut Query<(Entity, MeetingColumns)>,
-) {
+) -> Result<(), Error> {
     contacts.surface.figures.steps += 1;
     let moved = motion::moved::<T>(contacts, bodies, cpu);
     let idle = contacts.surface.pressed.is_empty() && contacts.surface.touching.is_empty();
     if idle && moved.is_some_and(|moved| contacts.sleeps(moved)) {
         contacts.surface.figures.asleep += 1;
-        return;
+        return Ok(());
     }
     let mut bodies = body_slices::slices::<T>(contacts, bodies);
     if bodies.len() != contacts.bodies.len() {
-        return crate::error::missing("a column of a body");
+        return Err(missing("a column of a body"));
     }
     let largest = motion::largest_step(contacts, &bodies);
     let reach = motion::reach(contacts, largest);
@@ -297,7 +298,8 @@ fn step<T: Scalar>(
     if !faced::wake(contacts, reach, nearer) && contacts.surface.crossings.near.is_empty() {
         contacts.surface.figures.asleep += 1;
         meet::release(&mut contacts.surface, &mut bodies);
-        return meet::forget(contacts, &[], &mut bodies);
+        meet::forget(contacts, &[], &mut bodies);
+        return Ok(());
     }
     motion::update_places(contacts, &bodies, cpu);
     let lately = motion::follow_shortlists(contacts, &bodies, (reach, largest), moved);
@@ -306,4 +308,5 @@ fn step<T: Scalar>(
     meet::meet(contacts, largest, (clock, cpu), &mut bodies);
     contacts.surface.figures.examined += contacts.surface.found.len() as u64;
     contacts.surface.figures.contacts += contacts.surface.gathered.set.contacts.len() as u64;
+    Ok(())
 }

@@ -368,7 +368,7 @@ impl System {
     ) -> Self {
         let put_on: PutLoad = Arc::new(move |on, signal, entity| match load(on, signal) {
             Some(load) => drop(entity.insert(load)),
-            None => missing("what a load acts on"),
+            None => debug_assert!(false, "{}", missing("what a load acts on")),
         });
         self.load = Some(LoadOfScenes { word, put_on });
         self

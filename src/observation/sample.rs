@@ -39,7 +39,7 @@ pub fn sample(world: &mut World) -> Result<Sample, Error> {
     let mut sample = Sample { internal_work: internal_work(world)?, ..Sample::default() };
     if kernels.is_empty() {
         sample_nodes(&mut sample, world);
-        sample_elements(&mut sample, world);
+        sample_elements(&mut sample, world)?;
         return Ok(sample);
     }
     if let Some(mut device) = world.get_resource_mut::<Device>() {
@@ -117,7 +117,7 @@ fn sample_nodes(sample: &mut Sample, world: &mut World) {
     }
 }
 
-fn sample_elements(sample: &mut Sample, world: &mut World) {
+fn sample_elements(sample: &mut Sample, world: &mut World) -> Result<(), Error> {
     let blocks: Vec<(Entity, Entity)> =
         world.query::<(Entity, &Block)>().iter(world).map(|(entity, block)| (entity, block.body)).collect();
     let mut middle: Option<(Entity, Displacement)> = None;
@@ -126,8 +126,7 @@ fn sample_elements(sample: &mut Sample, world: &mut World) {
             middle = middle_of_step(world, body).map(|displacement| (body, displacement));
         }
         let Some((_, displacement)) = &middle else {
-            missing("a column of a body");
-            continue;
+            return Err(missing("a column of a body"));
         };
         let sums = match displacement.0 {
             Reals::F32(_) => sums_of::<f32>(world, entity, displacement),
@@ -136,6 +135,7 @@ fn sample_elements(sample: &mut Sample, world: &mut World) {
         debug_assert!(sums.is_some(), "a broken invariant: a block that cannot be sampled");
         sample.parts.extend(sums.map(|sums| (entity, sums)));
     }
+    Ok(())
 }
 
 /// Each block and what its elements come to at the present displacements, evaluated on the host.

@@ -5,6 +5,7 @@
 mod bond;
 mod gent;
 mod hanger;
+mod herd;
 mod in_tree;
 mod laws;
 mod memory;

@@ -11,6 +11,7 @@ mod grasp;
 mod lens;
 mod lobe;
 mod parameters;
+mod passes;
 mod resume;
 mod shipped;
 mod surfaces;

@@ -33,7 +33,7 @@ impl Failure {
     pub fn status(&self) -> u8 {
         match self {
             Failure::Engine(error) => match **error {
-                Error::Unstable(_) | Error::NotConverged(_) | Error::NotUnloaded(_) => 1,
+                Error::Unstable(_) | Error::NotConverged(_) | Error::NotUnloaded(_) | Error::Broken(_) => 1,
                 Error::Scene(_) | Error::Options(_) | Error::Snapshot(_) => 2,
                 Error::Output(_) => 3,
                 Error::NoGpu(_) | Error::Gpu(_) | Error::GpuFailed(_) => 4,
