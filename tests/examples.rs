@@ -48,7 +48,7 @@ fn a_hand_feels_a_block_and_is_replayed() {
 #[test]
 fn custom_system_shares_a_pass_and_pulls_alike_on_both_backends_and_on_the_host() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/magnet.ron");
-    // of the same step: how stiff the magnet is, the host's system cannot say
+    // of the same step: how stiff the magnet is, the host's system does not say (`with_slopes` would)
     let sets = ["duration=0.3".into(), "integration=(step: 4e-4)".into()];
     let scene = SceneFile::load(path, &sets).unwrap();
     let (of_nodes, on_host) = (custom_system::registry(), host_system::registry());
