@@ -120,6 +120,33 @@ fn an_import_that_runs_the_other_way_is_found() {
     assert_eq!(named_too_early(&parts, "crates/pictures", pictures), ["studies"]);
 }
 
+/// Comments of code and scenes, and prose of pages that is no table, no code and no lone link.
+#[test]
+fn prose_is_wrapped_at_120() {
+    let mut wrong = Vec::new();
+    for ending in ["rs", "wgsl", "ron", "md"] {
+        let folders: &[&str] = match ending {
+            "md" => &["docs", "benches", "ARCHITECTURE.md", "CHANGELOG.md", "README.md"],
+            _ => &["src", "systems", "shaders", "scenes", "tests", "crates", "benches", "examples"],
+        };
+        for (file, text) in files(folders, ending) {
+            let mut is_code = false;
+            for (number, line) in text.lines().enumerate() {
+                let line_start = line.trim_start();
+                is_code ^= line_start.trim_start_matches(['/', '!', ' ']).starts_with("```");
+                let is_prose = match ending {
+                    "md" => !line_start.starts_with(['|', '#', '!', '<', '[']),
+                    _ => line_start.starts_with("//"),
+                };
+                if is_prose && !is_code && line.chars().count() > 120 && line_start.contains(' ') {
+                    wrong.push(format!("{file}:{}", number + 1));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "over 120 columns: {}", wrong.join(", "));
+}
+
 #[test]
 fn wgpu_is_known_in_one_place() {
     for (file, text) in files(&["src", "systems", "crates"], "rs") {
