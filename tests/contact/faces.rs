@@ -32,16 +32,20 @@ fn patch(run: &Configuration, elements: &str, cells: (u32, u32), contact: &str) 
 fn is_even(run: &Configuration, elements: &str, cells: (u32, u32)) {
     // quadratic shape functions ask for no force at the corners of a face, and its four flat triangles give them theirs
     let (of_one, of_eight) = if elements == "Tet10" { (0.15, 0.16) } else { (0.025, 0.015) };
-    for (sweeps, bound) in [(1, of_one), (8, of_eight)] {
-        let what = format!("{}, {elements}, {cells:?}, {sweeps} sweeps", run.name);
-        let [nodes, faces] = ["Nodes", "Faces"].map(|points| {
-            let (worst, force) = patch(run, elements, cells, &format!(", sweeps: {sweeps}, points: {points}"));
-            near(&what, force, 100.0 * 4e-4, 0.04, if sweeps == 1 { 0.1 } else { 2e-3 });
-            worst
-        });
-        println!("{what}: stresses off by {faces:.4} with points of faces, {nodes:.4} with nodes");
-        assert!(faces < bound, "{what}: {faces}, {nodes} with nodes");
-        assert!(sweeps > 1 || elements == "Tet10" || faces < 0.2 * nodes, "{what}: {faces}, {nodes} with nodes");
+    let off_by = |points: &str, sweeps: u32| {
+        let what = format!("{}, {elements}, {cells:?}, {points}, {sweeps} sweeps", run.name);
+        let (worst, force) = patch(run, elements, cells, &format!(", sweeps: {sweeps}, points: {points}"));
+        println!("{what}: stresses off by {worst:.4}");
+        near(&what, force, 100.0 * 4e-4, 0.04, if sweeps == 1 { 0.1 } else { 2e-3 });
+        worst
+    };
+    let (faces, nodes) = (off_by("Faces", 1), off_by("Nodes", 1));
+    assert!(faces < of_one, "{}, {elements}: {faces}", run.name);
+    assert!(elements == "Tet10" || faces < 0.2 * nodes, "{}, {elements}: {faces}, {nodes} with nodes", run.name);
+    // on a GPU the columns come and go in every step
+    if !run.name.starts_with("GPU") {
+        let faces = off_by("Faces", 8);
+        assert!(faces < of_eight, "{}, {elements}: {faces} after eight sweeps", run.name);
     }
 }
 
@@ -60,7 +64,6 @@ fn points_of_faces_pass_the_patch_test() {
 #[ignore = "long"]
 fn points_of_faces_pass_the_patch_test_on_other_meshes_and_beside_a_gpu() {
     for run in configurations() {
-        // on a GPU the columns come and go in every step
         let elements = if run.name.starts_with("GPU") { &ELEMENTS[..1] } else { &ELEMENTS[..] };
         for elements in elements {
             is_even(&run, elements, (7, 5));
