@@ -49,8 +49,7 @@ fn is_even(run: &Configuration, elements: &str, cells: (u32, u32)) {
     }
 }
 
-/// The contact patch test on meshes that do not match (C12), 1.5 % after eight sweeps. Nodes leave 1 to 2 % of
-/// tetrahedra then and 7 to 15 % of hexahedra, and after one sweep 10 to 40 %.
+/// The contact patch test on meshes that do not match (C12), 1.5 % after eight sweeps.
 #[test]
 fn points_of_faces_pass_the_patch_test() {
     for run in configurations().iter().filter(|run| !run.name.starts_with("GPU")) {
