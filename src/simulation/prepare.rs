@@ -64,6 +64,9 @@ pub(super) fn prepare<'a>(
     if clock.velocities_at_ends || scene.scene.is_static_by_newton() {
         super::implicit::check(&schedule, diagnostics);
     }
+    if clock.velocities_at_ends {
+        super::implicit::check_moves(&schedule, diagnostics);
+    }
     Some(Prepared { assembly, clock, stability, steps, schedule })
 }
 

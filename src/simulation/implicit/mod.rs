@@ -22,7 +22,7 @@ mod work;
 pub use report::ImplicitSteps;
 pub(super) use statics::{Attempt, Rest, Statics};
 pub(super) use step::Implicit;
-pub(super) use unsupported::check;
+pub(super) use unsupported::{check, check_moves};
 
 use super::Simulation;
 use super::build::after_the_step;
