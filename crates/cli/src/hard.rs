@@ -6,7 +6,7 @@ use super::terminal::{self, Paint};
 use super::{Outcome, interrupt};
 use sinew::backend::gpu::{Choice, Gpu};
 use sinew::output::{Folder, OutputError, replace, summary};
-use sinew_studies::hard::{CASES, Case, CaseConfiguration, CaseVerdict, Row, csv, markdown, run};
+use sinew_studies::hard::{CASES, Case, CaseConfiguration, CaseVerdict, Row, by_case, csv, markdown, run};
 use std::io::Write;
 use std::path::Path;
 
@@ -32,7 +32,7 @@ pub fn command(arguments: &HardArguments) -> Outcome {
             case.title,
             case.passes_when
         ))?;
-        for configuration in configurations.iter().filter(|configuration| (case.on)(configuration)) {
+        for configuration in configurations.iter().filter(|configuration| case.has_row(configuration)) {
             if interrupt::is_asked() {
                 break;
             }
@@ -73,10 +73,10 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Case>, Failure> {
 
 fn line(row: &Row, paint: Paint) -> String {
     let verdict = match row.verdict {
-        CaseVerdict::Passed => row.verdict.to_string(),
+        CaseVerdict::Passed | CaseVerdict::NotMeant => row.verdict.to_string(),
         _ => paint.red(&row.verdict.to_string()),
     };
-    let mut text = format!("  {:18} {}  {verdict} in {:.2} s", row.elements, row.machine, row.seconds);
+    let mut text = format!("  {:18} {:17}  {verdict} in {:.2} s", row.elements, row.machine, row.seconds);
     if row.verdict == CaseVerdict::Passed {
         let tightest = row.tightest().map(|gate| format!(": {} {:.3e} ({})", gate.what, gate.figure, gate.allowed));
         text += &tightest.unwrap_or_default();
@@ -90,13 +90,14 @@ fn line(row: &Row, paint: Paint) -> String {
     text + "\n"
 }
 
-/// "40 passed, 2 failed honestly, 1 failed; all as expected".
+/// "40 passed, 2 failed honestly, 1 failed, 3 not meant; all as expected".
 fn counted(rows: &[Row], unexpected: usize) -> String {
     let count = |verdict: CaseVerdict| rows.iter().filter(|row| row.verdict == verdict).count();
     let (passed, honest, failed) =
         (count(CaseVerdict::Passed), count(CaseVerdict::FailedHonestly), count(CaseVerdict::Failed));
+    let not_meant = count(CaseVerdict::NotMeant);
     let expected = if unexpected == 0 { "all as expected".into() } else { format!("{unexpected} not as expected") };
-    format!("{passed} passed, {honest} failed honestly, {failed} failed; {expected}")
+    format!("{passed} passed, {honest} failed honestly, {failed} failed, {not_meant} not meant; {expected}")
 }
 
 /// `hard.json` is this.
@@ -107,7 +108,8 @@ struct Table<'a> {
 
 fn write(path: &Path, rows: &[Row]) -> Outcome {
     let mut folder = Folder::create_for(path, "sinew hard")?;
-    for (name, text) in [("hard.md", markdown(rows)), ("hard.csv", csv(rows))] {
+    let tables = format!("{}\n{}", by_case(rows), markdown(rows));
+    for (name, text) in [("hard.md", tables), ("hard.csv", csv(rows))] {
         let path = folder.claim(name)?;
         replace(&path, |file| file.write_all(text.as_bytes()).map_err(OutputError::system("write", &path)))?;
     }

@@ -4,8 +4,8 @@ use super::super::schedule::Scheduled;
 use crate::scene::Diagnostics;
 use crate::systems::{OnHost, Phase};
 
-/// Refuses what moves nodes where a schedule of the scene's own names it. It shares a pass with forces, which would not be
-/// taken then.
+/// Refuses what moves nodes where a schedule of the scene's own names it. It shares a pass with forces, which would not
+/// be taken then.
 pub(in crate::simulation) fn check_moves(schedule: &[Scheduled<'_>], diagnostics: &mut Diagnostics) {
     let moves = |entry: &&Scheduled<'_>| entry.system.host.nodes().is_some_and(|rows| rows.moves_nodes);
     for entry in schedule.iter().filter(moves).filter(|entry| !entry.system.custom) {

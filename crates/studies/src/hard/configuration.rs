@@ -11,6 +11,8 @@ pub struct CaseConfiguration {
     pub elements: ElementKind,
     /// Where, and in which number type.
     pub options: Options,
+    /// Whether by implicit steps, and statics by Newton's iterations.
+    pub implicit: bool,
 }
 
 impl CaseConfiguration {
@@ -19,9 +21,10 @@ impl CaseConfiguration {
         self.elements.name()
     }
 
-    /// `CPU f64`, `CPU f32` or `GPU f32`.
+    /// `CPU f64`, `CPU f32`, `GPU f32` or `CPU f64, implicit`.
     pub fn machine(&self) -> &'static str {
         match (self.options.backend, self.options.precision) {
+            _ if self.implicit => "CPU f64, implicit",
             (BackendChoice::Gpu, _) => "GPU f32",
             (_, Precision::F64) => "CPU f64",
             (_, Precision::F32) => "CPU f32",
@@ -48,20 +51,21 @@ impl CaseConfiguration {
         matches!(self.elements, ElementKind::Tet4 | ElementKind::Tet4NodalPressure)
     }
 
-    /// Every element on CPU f64, CPU f32 and, if it is wanted, GPU f32.
+    /// Every element on CPU f64, CPU f32 and, if it is wanted, GPU f32; and by implicit steps.
     pub fn all(gpu: bool) -> Vec<Self> {
         let machines = [
-            (BackendChoice::Cpu, Precision::F64),
-            (BackendChoice::Cpu, Precision::F32),
-            (BackendChoice::Gpu, Precision::F32),
+            (BackendChoice::Cpu, Precision::F64, false),
+            (BackendChoice::Cpu, Precision::F32, false),
+            (BackendChoice::Gpu, Precision::F32, false),
+            (BackendChoice::Cpu, Precision::F64, true),
         ];
         let elements =
             [ElementKind::Tet4, ElementKind::Tet4NodalPressure, ElementKind::Hex8, ElementKind::Hex8MeanDilatation];
         let machines = machines.into_iter().filter(|machine| gpu || machine.0 != BackendChoice::Gpu);
         machines
-            .flat_map(|(backend, precision)| {
+            .flat_map(|(backend, precision, implicit)| {
                 let options = Options { backend, precision, threads: 1, ..Options::default() };
-                elements.map(|elements| Self { elements, options: options.clone() })
+                elements.map(|elements| Self { elements, options: options.clone(), implicit })
             })
             .collect()
     }

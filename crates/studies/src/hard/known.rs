@@ -25,6 +25,30 @@ pub const SHORTFALLS: &[Shortfall] = &[
         why: "the hourglass stiffness is that of bending, and a load on one node bends: .6 of the strain energy on every mesh and at every Poisson's ratio; it is warned of, and Hex8MeanDilatation has no such energy",
     },
     Shortfall {
+        case: "h07",
+        on: |c, _| c.implicit,
+        verdict: CaseVerdict::FailedHonestly,
+        why: "between walls, at 9 % of its height, Newton's directions lead no way down in steps of 1 ms, at 77 % where steps are solved to 1e-8; why has not been found out",
+    },
+    Shortfall {
+        case: "h22",
+        on: |c, _| c.implicit,
+        verdict: CaseVerdict::Failed,
+        why: "the trapezoidal rule keeps the energy of what turns, not its angular momentum: by steps of 1 ms 1e-4 to 5e-4 of it go in ten turns, and by steps of .1 ms a hundredth of that",
+    },
+    Shortfall {
+        case: "h24",
+        on: |c, _| c.implicit,
+        verdict: CaseVerdict::Failed,
+        why: "a jump is one step, however short, and forces work with the mean of those at both its ends: 1.8 % off what a tenth of the length stores",
+    },
+    Shortfall {
+        case: "h26",
+        on: |c, _| c.implicit && !c.is_tets(),
+        verdict: CaseVerdict::Failed,
+        why: "a step that ends just where nodes touch the plate has no forces but those of depths that rounding makes: a residual of 1e-11 N counts as a step that is not found (10 m/s, penalty ×100; all else passes)",
+    },
+    Shortfall {
         // everyday, finer meshes are tried in one configuration alone
         case: "h01",
         on: |c, full| c.elements == ElementKind::Tet4NodalPressure && (full || c.is_quickest()),

@@ -6,6 +6,7 @@
 
 mod cases;
 mod configuration;
+mod implicit;
 mod known;
 mod monitor;
 mod report;
@@ -13,13 +14,15 @@ mod trial;
 
 pub use cases::CASES;
 pub use configuration::CaseConfiguration;
+pub use implicit::Implicitly;
 pub use known::{SHORTFALLS, Shortfall, known};
 pub use monitor::Monitor;
-pub use report::{csv, markdown};
+pub use report::{by_case, csv, markdown};
 pub use trial::{Gate, Trial};
 
 use serde::Serialize;
 use sinew::Error;
+use sinew::mesh::ElementKind;
 use std::time::Instant;
 
 /// One of the hard cases.
@@ -36,6 +39,8 @@ pub struct Case {
     pub scene: &'static str,
     /// Whether a configuration is one of its own, or would only repeat another.
     pub on: fn(&CaseConfiguration) -> bool,
+    /// What it means under implicit steps.
+    pub implicitly: Implicitly,
     /// Runs it and measures.
     pub run: fn(&mut Trial<'_>) -> Result<(), Error>,
 }
@@ -44,6 +49,14 @@ impl Case {
     /// The file of its scene.
     pub fn file(&self) -> String {
         format!("scenes/hard/{}_{}.ron", self.id.to_lowercase(), self.name)
+    }
+
+    /// Whether a configuration has a row of its own; of what is not meant under implicit steps one says so.
+    pub fn has_row(&self, configuration: &CaseConfiguration) -> bool {
+        let said = !configuration.implicit
+            || matches!(self.implicitly, Implicitly::By(_))
+            || configuration.elements == ElementKind::Hex8;
+        (self.on)(configuration) && said
     }
 }
 
@@ -57,6 +70,8 @@ pub enum CaseVerdict {
     FailedHonestly,
     /// A gate did not pass.
     Failed,
+    /// It has no meaning there, and says why.
+    NotMeant,
 }
 
 impl std::fmt::Display for CaseVerdict {
@@ -65,6 +80,7 @@ impl std::fmt::Display for CaseVerdict {
             CaseVerdict::Passed => "passed",
             CaseVerdict::FailedHonestly => "failed honestly",
             CaseVerdict::Failed => "FAILED",
+            CaseVerdict::NotMeant => "not meant",
         })
     }
 }
@@ -103,7 +119,12 @@ impl Row {
 
 /// Runs a case in a configuration.
 pub fn run(case: &Case, configuration: &CaseConfiguration, full: bool) -> Row {
+    if let (true, Implicitly::NotMeant(why)) = (configuration.implicit, &case.implicitly) {
+        return not_meant(case, configuration, why);
+    }
     let started = Instant::now();
+    // finer meshes and longer runs are those of explicit steps
+    let full = full && !configuration.implicit;
     let mut trial = Trial { case, configuration, full, gates: Vec::new() };
     let ended = (case.run)(&mut trial);
     let gates = trial.gates;
@@ -122,4 +143,20 @@ pub fn run(case: &Case, configuration: &CaseConfiguration, full: bool) -> Row {
     let (elements, machine) = (configuration.elements_name(), configuration.machine());
     let seconds = started.elapsed().as_secs_f64();
     Row { case: case.id, title: case.title, elements, machine, verdict, expected, gates, message, known, seconds }
+}
+
+/// The row of a case that says why it is not run.
+fn not_meant(case: &Case, configuration: &CaseConfiguration, why: &str) -> Row {
+    Row {
+        case: case.id,
+        title: case.title,
+        elements: "all",
+        machine: configuration.machine(),
+        verdict: CaseVerdict::NotMeant,
+        expected: CaseVerdict::NotMeant,
+        gates: Vec::new(),
+        message: Some(why.into()),
+        known: None,
+        seconds: 0.0,
+    }
 }

@@ -90,7 +90,7 @@ impl Monitor {
 
 /// What bodies hold or have given away.
 fn held(e: &Energies) -> f64 {
-    e.kinetic + e.strain + e.hourglass + e.removed + e.damping_loss.unwrap_or(0.0)
+    e.kinetic + e.strain + e.hourglass + e.removed + e.damping_loss.unwrap_or(0.0) + e.scheme_loss.unwrap_or(0.0)
 }
 
 /// What was put in.

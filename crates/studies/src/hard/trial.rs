@@ -1,6 +1,6 @@
 //! A hard case under one configuration: its scene, and the gates that what comes out has to pass.
 
-use super::{Case, CaseConfiguration};
+use super::{Case, CaseConfiguration, Implicitly};
 use sinew::Error;
 use sinew::Simulation;
 use sinew::output::OutputError;
@@ -46,8 +46,22 @@ impl<'a> Trial<'a> {
         if self.case.scene.contains("elements: ") {
             all.push(format!("bodies.body.mesh.elements={}", self.configuration.elements_name()));
         }
+        all.extend(self.implicit_sets());
         all.extend_from_slice(sets);
         Ok(SceneFile::from_text(&self.case.file(), self.case.scene, Path::new("."), &all)?)
+    }
+
+    /// Whether by implicit steps.
+    pub fn is_implicit(&self) -> bool {
+        self.configuration.implicit
+    }
+
+    /// What makes the scene one of implicit steps, where it is to be.
+    fn implicit_sets(&self) -> Vec<String> {
+        match self.case.implicitly {
+            Implicitly::By(set) if self.is_implicit() => vec!["integration=()".into(), set.into()],
+            _ => Vec::new(),
+        }
     }
 
     /// A simulation of the scene.
@@ -75,7 +89,12 @@ impl<'a> Trial<'a> {
         let folder = tempfile::tempdir().map_err(OutputError::system("create a folder in", &place))?;
         let path = folder.path().join(name);
         std::fs::write(&path, text).map_err(OutputError::system("write", &path))?;
-        let scene = SceneFile::from_text(&self.case.file(), self.case.scene, folder.path(), sets)?;
+        let scene = SceneFile::from_text(
+            &self.case.file(),
+            self.case.scene,
+            folder.path(),
+            &[self.implicit_sets(), sets.to_vec()].concat(),
+        )?;
         Simulation::new(&scene, &self.configuration.options)
     }
 

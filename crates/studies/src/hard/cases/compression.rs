@@ -37,6 +37,9 @@ pub fn squeezed_cube(trial: &mut Trial<'_>) -> Result<(), Error> {
             trial.near(format!("force at ν {poisson}"), force, fine.probe("plate")?[2], 0.05);
         }
     }
+    if trial.is_implicit() {
+        return Ok(());
+    }
     let [least, most] = steps.iter().fold([f64::INFINITY, 0.0_f64], |[l, m], s| [l.min(*s), m.max(*s)]);
     trial.most("change of Δt √κ", most / least - 1.0, 0.05);
     Ok(())

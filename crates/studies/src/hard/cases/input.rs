@@ -9,6 +9,20 @@ use sinew::systems::{Phase, Registry, System};
 
 /// H28.
 pub fn bad_numbers(trial: &mut Trial<'_>) -> Result<(), Error> {
+    let of_steps = [
+        ("an implicit step of 0", "solver=Implicit(step: 0)", ["step", "above 0"]),
+        ("an implicit step below 0", "solver=Implicit(step: -1)", ["step", "above 0"]),
+        ("an implicit step that is no number", "solver=Implicit(step: NaN)", ["step", "NaN"]),
+        ("no iteration of Newton's", "solver=Implicit(newton: 0)", ["newton", "at least 1"]),
+        ("a tolerance of 1", "solver=Implicit(tolerance: 1)", ["tolerance", "below 1"]),
+        ("no pass in a step", "solver=Implicit(budget: 0)", ["budget", "at least 1"]),
+        ("a share above 1", "solver=Implicit(scheme: GeneralizedAlpha(high_frequencies: 2))", ["from 0 to 1", "2"]),
+    ];
+    let of_steps = if trial.is_implicit() { &of_steps[..] } else { &[] };
+    for &(what, set, words) in of_steps {
+        let made = trial.start(&[set.to_string()]);
+        trial.refused(what, made, &words);
+    }
     for (what, set, words) in [
         ("no density", "materials.tissue.density=0", ["density", "above 0"]),
         ("a density below 0", "materials.tissue.density=-1", ["density", "above 0"]),
