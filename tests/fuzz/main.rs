@@ -19,6 +19,7 @@ mod samples;
 #[allow(dead_code)]
 mod samples_vtk;
 mod seeds;
+mod solvers;
 mod sound;
 mod surgery;
 mod targets;

@@ -5,6 +5,7 @@
 //! a snapshot. Other sums of forces, number types and backends agree but for rounding, where no threshold decides.
 
 use crate::dice::Temper;
+use crate::solvers::Solvers;
 use crate::{generate, number, sound};
 use fastrand::Rng;
 use glam::DVec3;
@@ -209,11 +210,21 @@ enum Ending {
     BrokeDown,
 }
 
+/// What made-up scenes hold beside bodies, constraints and loads.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Kind {
+    Plain,
+    /// Tools, and what bodies do to each other.
+    Surgery,
+    /// Implicit steps, and rest by Newton's iterations.
+    Solvers,
+}
+
 /// The scene of a seed, or where that is refused in words the first of some further ones that is not; `None` where all
 /// are.
-fn made_of(seed: u64, surgery: bool, rng: &mut Rng) -> Result<Option<(generate::Made, SceneFile)>, String> {
+fn made_of(seed: u64, kind: Kind, rng: &mut Rng) -> Result<Option<(generate::Made, SceneFile)>, String> {
     for further in 0..TRIALS {
-        if let Some(made) = one_of(seed + (further << 40), surgery, rng)? {
+        if let Some(made) = one_of(seed + (further << 40), kind, rng)? {
             return Ok(Some(made));
         }
     }
@@ -221,7 +232,7 @@ fn made_of(seed: u64, surgery: bool, rng: &mut Rng) -> Result<Option<(generate::
 }
 
 /// The scene of a seed, as long as its steps make it; `None` where it is refused in words.
-fn one_of(seed: u64, surgery: bool, rng: &mut Rng) -> Result<Option<(generate::Made, SceneFile)>, String> {
+fn one_of(seed: u64, kind: Kind, rng: &mut Rng) -> Result<Option<(generate::Made, SceneFile)>, String> {
     // how long a step is tells what the scene lasts
     let begins = |scene: &SceneFile| match Simulation::new(scene, &options(Precision::F64)) {
         Ok(simulation) => Ok(Some(simulation.time_step())),
@@ -229,6 +240,8 @@ fn one_of(seed: u64, surgery: bool, rng: &mut Rng) -> Result<Option<(generate::M
         Err(Error::Scene(_)) => Ok(None),
         Err(error) => Err(format!("does not start: {error}")),
     };
+    let surgery = kind == Kind::Surgery;
+    let solvers = (kind == Kind::Solvers).then(|| Solvers::of(seed));
     let any = generate::scene(seed, 1.0, None, surgery);
     let first = file(&any.text, &[])?;
     let Some(stable) = begins(&first)? else { return Ok(None) };
@@ -239,16 +252,22 @@ fn one_of(seed: u64, surgery: bool, rng: &mut Rng) -> Result<Option<(generate::M
         Temper::Heavy => 2,
     };
     let steps = if any.temper != Temper::Mild && rng.u8(..one_in) == 0 { rng.u64(MANY_STEPS) } else { steps };
-    let duration = if first.scene.is_static() { 1.0 } else { stable * steps as f64 };
-    let made = generate::scene(seed, duration, Some(stable), surgery);
+    let step = stable * solvers.as_ref().map_or(1.0, |solvers| solvers.longer);
+    let duration = if first.scene.is_static() { 1.0 } else { step * steps as f64 };
+    let mut made = generate::scene(seed, duration, Some(stable), surgery);
+    if let Some(solvers) = solvers {
+        made.text = solvers.put_into(&made.text, step, made.temper);
+        // how far a solve goes, and whether a step is found, rounding may decide
+        made.decides = true;
+    }
     let scene = file(&made.text, &[])?;
     Ok(begins(&scene)?.map(|_| (made, scene)))
 }
 
 /// What is wrong with the scene of a seed, if anything.
-fn attempt(seed: u64, surgery: bool, gpu: bool) -> Result<Ending, String> {
+fn attempt(seed: u64, kind: Kind, gpu: bool) -> Result<Ending, String> {
     let mut rng = Rng::with_seed(!seed);
-    let Some((made, scene)) = made_of(seed, surgery, &mut rng)? else { return Ok(Ending::Refused) };
+    let Some((made, scene)) = made_of(seed, kind, &mut rng)? else { return Ok(Ending::Refused) };
     let mut of_precision = Vec::new();
     for precision in [Precision::F64, Precision::F32] {
         let options = options(precision);
@@ -297,24 +316,31 @@ fn whole_of(run: &Run) -> Run {
 #[test]
 #[ignore = "long"]
 fn made_up_scenes_keep_their_word() {
-    try_scenes(false);
+    try_scenes(Kind::Plain);
 }
 
 /// The same with tools, contact, attachments, suction and removal by tools.
 #[test]
 #[ignore = "long"]
 fn made_up_surgery_keeps_its_word() {
-    try_scenes(true);
+    try_scenes(Kind::Surgery);
 }
 
-fn try_scenes(surgery: bool) {
+/// The same by implicit steps, and at rest by Newton's iterations.
+#[test]
+#[ignore = "long"]
+fn made_up_solvers_keep_their_word() {
+    try_scenes(Kind::Solvers);
+}
+
+fn try_scenes(kind: Kind) {
     let count = number("SINEW_FUZZ_SCENES", EVERYDAY) as u64;
     let first = number("SINEW_FUZZ_SEED", 0) as u64 * 1_000_000;
     let has_gpu = gpu_or_reason().is_some();
     let (mut found, mut endings) = (Vec::new(), BTreeMap::new());
     for seed in first..first + count {
-        let gpu = has_gpu && seed % GPU_ONE_IN == 0;
-        let tried = std::panic::catch_unwind(|| attempt(seed, surgery, gpu));
+        let gpu = has_gpu && kind != Kind::Solvers && seed % GPU_ONE_IN == 0;
+        let tried = std::panic::catch_unwind(|| attempt(seed, kind, gpu));
         let wrong = match tried {
             Ok(Ok(ending)) => {
                 *endings.entry((Temper::of(seed), ending)).or_insert(0) += 1;
@@ -334,16 +360,21 @@ fn try_scenes(surgery: bool) {
 }
 
 /// One scene of a seed, to look at, and what becomes of it: `SINEW_FUZZ_SHOW=17 cargo test --test fuzz show --
-/// --nocapture`; with `SINEW_FUZZ_SURGERY=1` with tools.
+/// --nocapture`; with `SINEW_FUZZ_SURGERY=1` with tools, with
+/// `SINEW_FUZZ_SOLVERS=1` by implicit steps.
 #[test]
 fn show_a_scene() {
     let seed = number("SINEW_FUZZ_SHOW", 0) as u64;
-    let surgery = number("SINEW_FUZZ_SURGERY", 0) > 0;
-    match made_of(seed, surgery, &mut Rng::with_seed(!seed)).unwrap() {
+    let kind = match (number("SINEW_FUZZ_SURGERY", 0), number("SINEW_FUZZ_SOLVERS", 0)) {
+        (0, 0) => Kind::Plain,
+        (0, _) => Kind::Solvers,
+        _ => Kind::Surgery,
+    };
+    match made_of(seed, kind, &mut Rng::with_seed(!seed)).unwrap() {
         Some((made, _)) => println!("{}", made.text),
-        None => println!("refused: {}", generate::scene(seed, 1.0, None, surgery).text),
+        None => println!("refused: {}", generate::scene(seed, 1.0, None, kind == Kind::Surgery).text),
     }
-    let ending = attempt(seed, surgery, false);
+    let ending = attempt(seed, kind, false);
     println!("{ending:?}");
     ending.unwrap();
 }
