@@ -231,15 +231,15 @@ impl Newton<'_, '_> {
     }
 
     /// About what rounding makes of the residual (N): of a displacement the last digit, times the norm of its row of K,
-    /// which a product with signs shows. The forces at w must be known.
+    /// which a product with signs shows, and its inertia. The forces at w must be known.
     fn rounding(&mut self) -> Result<f64, Error> {
         let signs = self.signs();
         let mut rows = vec![0.0; signs.len()];
         self.stiffness_times(&signs, &mut rows)?;
         let digit = if self.is_f64() { f64::EPSILON } else { f64::from(f32::EPSILON) };
-        let w = &self.space.w;
+        let Workspace { w, inertia, .. } = &*self.space;
         let free = (0..w.len()).filter(|&axis| self.motion.free[axis]);
-        let square: f64 = free.map(|axis| (rows[axis] * w[axis]).powi(2)).sum();
+        let square: f64 = free.map(|axis| ((rows[axis].abs() + inertia[axis]) * w[axis]).powi(2)).sum();
         Ok(digit * square.sqrt())
     }
 
