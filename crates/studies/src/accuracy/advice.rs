@@ -28,6 +28,7 @@ pub fn advice(rows: &[Row], split: &Split, source: ReferenceSource, judged_by: &
     sentences.push(cheapest(&with_errors, target));
     sentences.extend(spending(split));
     sentences.extend(better(&with_errors));
+    sentences.extend(implicit_steps(&with_errors, target));
     let clear = with_errors.iter().filter(|(_, error, _)| error.is_clear()).count();
     if clear * 2 < with_errors.len() {
         sentences.push(format!(
@@ -39,12 +40,55 @@ pub fn advice(rows: &[Row], split: &Split, source: ReferenceSource, judged_by: &
     sentences
 }
 
-fn cheapest(rows: &[(&Row, Error, f64)], target: f64) -> String {
+/// Of rows those that are surely under a target, the cheapest.
+fn cheapest_under<'a>(rows: &[(&'a Row, Error, f64)], target: f64) -> Option<(&'a Row, Error, f64)> {
     let under = rows.iter().filter(|(_, error, _)| error.error + error.uncertainty <= target);
+    under.min_by(|a, b| a.2.total_cmp(&b.2)).copied()
+}
+
+/// Whether implicit steps are worth their price on the mesh of the scene, where some ran.
+fn implicit_steps(rows: &[(&Row, Error, f64)], target: f64) -> Option<String> {
+    let (implicit, others): (Vec<_>, Vec<_>) =
+        rows.iter().copied().partition(|(row, ..)| row.configuration.method.is_implicit());
+    let nearest = implicit.iter().min_by(|a, b| a.1.vouched().total_cmp(&b.1.vouched()))?;
+    let mesh = |row: &Row| (row.configuration.element, row.configuration.mesh);
+    let others: Vec<_> = others.into_iter().filter(|(row, ..)| mesh(row) == mesh(nearest.0)).collect();
+    let other = cheapest_under(&others, target)?;
+    let said = match cheapest_under(&implicit, target) {
+        Some((row, _, time)) if time < other.2 => {
+            format!(
+                "Implicit steps pay: {} takes {} of the time of {}.",
+                row.label,
+                percent(time / other.2),
+                other.0.label
+            )
+        }
+        Some((row, _, time)) => format!(
+            "Implicit steps do not pay: {}, the cheapest of them under {}, takes {} of the time of {}.",
+            row.label,
+            percent(target),
+            percent(time / other.2),
+            other.0.label
+        ),
+        None => {
+            let (row, error, time) = nearest;
+            format!(
+                "Implicit steps do not pay: the nearest, {}, errs {} at {}.",
+                row.label,
+                told(error),
+                price(row, *time)
+            )
+        }
+    };
+    Some(said)
+}
+
+fn cheapest(rows: &[(&Row, Error, f64)], target: f64) -> String {
+    let found = cheapest_under(rows, target);
     let target = percent(target);
-    match under.min_by(|a, b| a.2.total_cmp(&b.2)) {
+    match found {
         Some((row, error, time)) => {
-            format!("Cheapest under {target}: {}, {} at {}.", row.label, told(error), price(row, *time))
+            format!("Cheapest under {target}: {}, {} at {}.", row.label, told(&error), price(row, time))
         }
         None => {
             let nearest = rows.iter().min_by(|a, b| a.1.vouched().total_cmp(&b.1.vouched()));
@@ -141,4 +185,14 @@ pub fn seconds(value: f64) -> String {
     };
     let value = value * factor;
     if value >= 99.5 { format!("{value:.0} {unit}") } else { format!("{value:.2} {unit}") }
+}
+
+/// `1.00 ms` as `1 ms`.
+pub fn plain(text: &str) -> String {
+    match text.split_once(' ') {
+        Some((number, unit)) if number.contains('.') => {
+            format!("{} {unit}", number.trim_end_matches('0').trim_end_matches('.'))
+        }
+        _ => text.to_string(),
+    }
 }

@@ -1,5 +1,6 @@
 //! One way to solve a scene: what is varied, and how a variation is called.
 
+use super::method::Method;
 use serde::{Serialize, Serializer};
 use sinew::mesh::ElementKind;
 use sinew::scene::schema::ViscousIntegrator;
@@ -128,6 +129,8 @@ pub struct Configuration {
     pub mesh: Factor,
     /// The scene's step is divided by this.
     pub step: u32,
+    /// How it is stepped in time, or led to rest.
+    pub method: Method,
     /// The number type.
     pub digits: Digits,
     /// The scene's hourglass stiffness is multiplied by this.
@@ -159,6 +162,9 @@ impl Configuration {
         }
         if self.step != base.step {
             words.push(format!("Δt/{}", self.step));
+        }
+        if self.method != base.method {
+            words.push(self.method.to_string());
         }
         if self.digits != base.digits {
             words.push(self.digits.to_string());

@@ -3,6 +3,7 @@
 //! ```text
 //! configuration  one way to solve a scene            solver    what a study needs of whoever solves it
 //! plan           what is varied, what fits            study     runs the plan
+//! method         how it is stepped in time
 //! refinement     which meshes a reference is made of  work      the runs and their time
 //! reference      what errors are measured against     quantities, oscillation, field, points: what is compared
 //! richardson     the limit of small cells             findings  orders, parts of the error, verdict
@@ -18,6 +19,7 @@ pub mod estimate;
 pub mod field;
 pub mod files;
 pub mod findings;
+pub mod method;
 pub mod oscillation;
 mod outlook;
 pub mod pareto;
@@ -37,6 +39,7 @@ pub use configuration::{Configuration, Digits, Factor, Processor};
 pub use engine::Engine;
 pub use estimate::Estimate;
 pub use findings::{Findings, TargetVerdict};
+pub use method::Method;
 pub use plan::{Fate, Plan, Varied};
 pub use reference::Reference;
 pub use solver::{Choices, Cost, Refusal, Solution, Solver};

@@ -30,6 +30,8 @@ pub enum Varied {
     Law,
     /// Where it runs.
     Place,
+    /// How it is stepped in time, or led to rest.
+    Solver,
     /// Step and number type at once, so that space alone is left to err.
     SpaceAlone,
     /// An effect is switched off.
@@ -223,6 +225,11 @@ fn variations(choices: &Choices) -> Vec<(Varied, Configuration)> {
     choices.viscous.iter().for_each(|viscous| add(Varied::Viscous, &|c| c.viscous = Some(*viscous)));
     choices.laws.iter().for_each(|law| add(Varied::Law, &|c| c.law = Some(law.clone())));
     choices.places.iter().for_each(|place| add(Varied::Place, &|c| c.place = *place));
+    for &method in &choices.methods {
+        // implicit steps run on the CPU only
+        let place = if method.is_implicit() { Processor::Cpu } else { base.place };
+        add(Varied::Solver, &|c| (c.method, c.place) = (method, place));
+    }
     if choices.digits.contains(&Digits::Double) {
         add(Varied::SpaceAlone, &|c| {
             (c.digits, c.step, c.place) = (Digits::Double, finest_step(choices), Processor::Cpu);

@@ -128,8 +128,9 @@ pub fn made(refined: &Refined, choices: &Choices, rows: &[Row], solutions: &[Opt
     }
     let quarter = solution(&|row| row.varied == Varied::Step && row.configuration.step == 4);
     if let Some(quarter) = quarter.filter(|_| choices.step_is_fixed) {
-        // of second order: a quarter of the step leaves a sixteenth of its error
-        reference = reference.blurred_by(written, quarter, 16.0 / 15.0);
+        // of second order, a quarter of the step leaves a sixteenth of its error; of first order a quarter
+        let times = 4f64.powi(way.method.order());
+        reference = reference.blurred_by(written, quarter, times / (times - 1.0));
     }
     Some(reference)
 }

@@ -1,6 +1,7 @@
 //! What a study needs of whatever solves the scene: an offer of variations, a prediction of time, a solution.
 
 use super::configuration::{Configuration, Digits, Factor, Processor};
+use super::method::Method;
 use glam::DVec3;
 use sinew::mesh::{ElementKind, Mesh};
 use sinew::scene::schema::ViscousIntegrator;
@@ -61,6 +62,8 @@ pub struct Choices {
     pub laws: Vec<String>,
     /// Where it can run.
     pub places: Vec<Processor>,
+    /// Ways to step in time, or to seek equilibrium.
+    pub methods: Vec<Method>,
     /// Names of the channels that its solutions have, such as `tip.uz`.
     pub quantities: Vec<String>,
     /// Effects that can be switched off, in words.

@@ -6,7 +6,7 @@ use sinew::mesh::{ElementKind, Mesh};
 use sinew_studies::accuracy::solver::{BodyField, Channel, Field};
 use sinew_studies::accuracy::study::Outcome;
 use sinew_studies::accuracy::{
-    Choices, Configuration, Cost, Digits, Factor, Plan, Processor, Refusal, Solution, Solver, StudyObserver,
+    Choices, Configuration, Cost, Digits, Factor, Method, Plan, Processor, Refusal, Solution, Solver, StudyObserver,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -25,6 +25,11 @@ pub struct MadeUp {
     pub rounding: f64,
     /// Seconds that an element and step takes.
     pub seconds: f64,
+    /// Ways to step in time.
+    pub methods: Vec<Method>,
+    /// Relative error of an implicit step of a second, of first or second order, and what one takes in explicit steps.
+    pub implicit: f64,
+    pub passes: f64,
     /// Configurations that break down, by label.
     pub breaks: Vec<&'static str>,
     /// Configurations that are refused, by label.
@@ -43,6 +48,9 @@ impl Default for MadeUp {
             time: 1e-4,
             rounding: 1e-6,
             seconds: 1e-6,
+            methods: Vec::new(),
+            implicit: 0.05,
+            passes: 4.0,
             breaks: Vec::new(),
             refuses: Vec::new(),
             interrupted_after: None,
@@ -56,6 +64,7 @@ pub fn base() -> Configuration {
         element: Some(ElementKind::Hex8),
         mesh: Factor::ONE,
         step: 1,
+        method: Method::Explicit,
         digits: Digits::Compensated,
         hourglass: 1.0,
         viscous: None,
@@ -70,7 +79,11 @@ impl MadeUp {
         let h = 1.0 / c.mesh.value();
         let locking = if c.element == Some(ElementKind::Tet4) { 4.0 } else { 1.0 };
         let space = locking * self.space * h.powf(self.order);
-        let time = self.time / f64::from(c.step).powi(2);
+        let time = match c.method {
+            Method::Implicit { step, .. } => self.implicit * step.powi(c.method.order()),
+            Method::HeavierMasses(times) => self.time * f64::from(times),
+            _ => self.time / f64::from(c.step).powi(2),
+        };
         let rounding = if c.digits == Digits::Double { 0.0 } else { self.rounding };
         let effect = if c.without.is_some() { 0.5 } else { 1.0 };
         effect * self.exact * (1.0 + space + time + rounding)
@@ -103,6 +116,7 @@ impl Solver for MadeUp {
             viscous: vec![],
             laws: vec![],
             places: vec![],
+            methods: self.methods.clone(),
             quantities: vec!["tip.uz".into()],
             effects: vec!["gravity".into()],
             unseen: vec![],
@@ -114,9 +128,15 @@ impl Solver for MadeUp {
         if self.refuses.contains(&c.label(&base()).as_str()) {
             return Err(Refusal::Refused("it makes no sense".into()));
         }
-        let (elements, steps) = (64.0 * c.mesh.value().powi(3), 100.0 * c.mesh.value() * f64::from(c.step));
+        let elements = 64.0 * c.mesh.value().powi(3);
+        let explicit = 100.0 * c.mesh.value() * f64::from(c.step);
+        let (steps, passes) = match c.method {
+            Method::Implicit { step, .. } => (1.0 / step, self.passes),
+            Method::HeavierMasses(times) => (explicit / f64::from(times).sqrt(), 1.0),
+            _ => (explicit, 1.0),
+        };
         let double = if c.digits == Digits::Double { 2.0 } else { 1.0 };
-        let seconds = self.seconds * double * elements * steps;
+        let seconds = self.seconds * double * elements * steps * passes;
         Ok(Cost { seconds, elements: elements as u64, steps: steps as u64 })
     }
 

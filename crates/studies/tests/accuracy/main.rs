@@ -10,4 +10,5 @@ mod made_up;
 mod plots;
 mod references;
 mod refinement;
+mod solvers;
 mod studies;

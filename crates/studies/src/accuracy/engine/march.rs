@@ -59,6 +59,11 @@ impl Sampling {
         probes.chain(["energy.kinetic".into(), "energy.strain".into()]).collect()
     }
 
+    /// A step (s) of which a whole number makes the duration, at most `step` (s): samples lie within the steps, too.
+    pub fn whole(duration: f64, step: f64) -> f64 {
+        duration / (duration / step - 1e-9).ceil().max(1.0)
+    }
+
     /// A step (s) of which a whole number lies between two samples, at most `step` (s).
     pub fn fitting(&self, duration: f64, step: f64) -> f64 {
         let between = (duration / self.count as f64 / step - 1e-9).ceil().max(1.0);

@@ -7,9 +7,11 @@ mod ladder;
 mod march;
 mod meshes;
 mod sample;
+mod steps;
 mod variant;
 
 use super::configuration::{Configuration, Digits, Factor, Processor};
+use super::method::Method;
 use super::solver::{Choices, Cost, Refusal, Solution, Solver};
 use calibration::Calibration;
 use march::{Sampling, refusal};
@@ -160,6 +162,14 @@ impl Engine<'_> {
     /// The step that the scene wants (s). One that it names itself is kept where it is stable, and for the scene as it
     /// is written, which may be meant to go beyond.
     fn step(&self, configuration: &Configuration, options: &Options) -> Result<f64, Refusal> {
+        match configuration.method {
+            Method::Implicit { step, .. } => return Ok(step),
+            Method::HeavierMasses(times) => {
+                let usual = Configuration { method: Method::Explicit, ..configuration.clone() };
+                return Ok(f64::from(times).sqrt() * self.step(&usual, options)?);
+            }
+            Method::Explicit | Method::Rest(_) => {}
+        }
         let integration = &self.file.scene.integration;
         let own = self.base(self.kinds.as_deref().unwrap_or_default());
         let as_written = (configuration.element, configuration.mesh) == (own.element, own.mesh);
@@ -189,13 +199,14 @@ impl Solver for Engine<'_> {
             meshes: self.sound_meshes()?,
             single_layers: self.single_layers(),
             touches: !scene.contacts.is_empty(),
-            step_is_fixed: scene.integration.step.is_some(),
+            step_is_fixed: scene.integration.step.is_some() || base.method.is_implicit(),
             steps: if scene.is_static() { Vec::new() } else { vec![2, 4] },
             digits: vec![Digits::Plain, Digits::Compensated, Digits::Double],
             hourglass: if hexes { vec![0.5, 2.0] } else { Vec::new() },
             viscous: if viscous { both.to_vec() } else { Vec::new() },
             laws: ladder::laws(scene),
             places,
+            methods: self.methods(&base)?,
             quantities: self.sampling.as_ref().map(Sampling::names).unwrap_or_default(),
             effects: if self.effects { effects::effects(scene) } else { Vec::new() },
             unseen: self.unseen()?,
@@ -221,8 +232,10 @@ impl Solver for Engine<'_> {
         let step = if self.file.scene.is_static() {
             None
         } else {
-            let largest = self.step(configuration, &options)?;
-            Some(sampling.fitting(self.file.scene.duration, largest / f64::from(configuration.step)))
+            let (duration, largest) = (self.file.scene.duration, self.step(configuration, &options)?);
+            let most = largest / f64::from(configuration.step);
+            let is_implicit = configuration.method.is_implicit();
+            Some(if is_implicit { Sampling::whole(duration, most) } else { sampling.fitting(duration, most) })
         };
         let scene = variant(self.file, configuration, step);
         let solution = march::solve(&scene, &options, &sampling, &|| self.check_time())?;

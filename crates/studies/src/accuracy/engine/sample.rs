@@ -114,7 +114,7 @@ impl<'a> Sampler<'a> {
         let (step, time) = (simulation.step_count(), simulation.time());
         let mut sample = Sample { time, ..Sample::default() };
         for (name, what, _) in &self.sampling.probes {
-            let later = *what == Quantity::Reaction;
+            let later = *what == Quantity::Reaction && !simulation.scene().is_implicit();
             sample.probes.push(if later { Vec::new() } else { simulation.probe(name).map_err(refusal)? });
         }
         if energies {
@@ -126,8 +126,11 @@ impl<'a> Sampler<'a> {
             let all = bodies.iter().map(|body| simulation.displacements(body));
             sample.displacements = Some(all.collect::<Result<_, _>>().map_err(refusal)?);
         }
-        // reactions are made of the forces at the beginning of the step before: those of now are known one step later
-        if self.sampling.probes.iter().any(|(_, what, _)| *what == Quantity::Reaction) {
+        // reactions are made of the forces at the beginning of the step before: those of now are known one step later;
+        // those of implicit steps are of their end
+        if !simulation.scene().is_implicit()
+            && self.sampling.probes.iter().any(|(_, what, _)| *what == Quantity::Reaction)
+        {
             // (in equilibrium nothing moves any more, and no step is taken)
             let seconds = timed(simulation, 1)?;
             self.seconds += if time < self.duration - MET * simulation.time_step() { seconds } else { 0.0 };

@@ -3,6 +3,7 @@
 use super::effects::switch_off;
 use super::ladder::climb;
 use crate::accuracy::configuration::{Configuration, Digits, Factor, Processor};
+use crate::accuracy::method::Method;
 use sinew::mesh::{CellKind, ElementKind};
 use sinew::scene::SceneFile;
 use sinew::scene::schema::{Analysis, Axis, Constraint, InitialState, MeshSource, Probe, Quantity, Scene, Select};
@@ -120,7 +121,7 @@ pub fn variant(file: &SceneFile, configuration: &Configuration, step: Option<f64
         climb(scene, law);
     }
     scene.integration.compensated = configuration.digits == Digits::Compensated;
-    scene.integration.step = step;
+    configuration.method.apply(scene, step);
     if let Some(effect) = &configuration.without {
         switch_off(scene, effect);
     }
@@ -179,6 +180,7 @@ pub fn written(scene: &Scene, element: Option<ElementKind>, double: bool, place:
         element,
         mesh: Factor::ONE,
         step: 1,
+        method: Method::of(scene),
         digits,
         hourglass: 1.0,
         viscous: if let [one] = viscous[..] { Some(one) } else { None },

@@ -2,7 +2,7 @@
 
 mod legend;
 
-use super::advice::{percent, seconds};
+use super::advice::{percent, plain, seconds};
 use super::plan::Varied;
 use super::reference::CLEARLY;
 use super::study::{Row, Study};
@@ -81,16 +81,6 @@ fn grid(page: &mut Drawing, x: &Axis, y: &Axis) {
         }
     }
     page.frame(FRAME, "#aab2bc");
-}
-
-/// `1.00 ms` as `1 ms`.
-fn plain(text: &str) -> String {
-    match text.split_once(' ') {
-        Some((number, unit)) if number.contains('.') => {
-            format!("{} {unit}", number.trim_end_matches('0').trim_end_matches('.'))
-        }
-        _ => text.to_string(),
-    }
 }
 
 fn tick(value: f64) -> String {
