@@ -5,7 +5,7 @@
 //! | `sinew.json` | [`Folder::create`], the mark that a folder is an output of sinew |
 //! | `fields.pvd`, `fields_000000.vtu` ... | [`Series`], one VTU file a [`Frame`] |
 //! | `skin_BODY.pvd`, `skin_BODY_000000.vtu` ... | [`Series`], the skin of a body that has one |
-//! | `skin_BODY_000000.ply` or `.obj` ... | [`write_surface`], the same for other programs, where the scene asks for it |
+//! | `skin_BODY_000000.ply` or `.obj` ... | [`write_surface`], the same for others, where the scene asks for it |
 //! | `whole_mesh.vtu` | [`write_vtu`], the mesh of before elements were removed, where no frame has it |
 //! | `energy.csv`, one table a probe | [`Table`] |
 //! | `nodes.csv` | [`nodes::write`] |
