@@ -1,9 +1,10 @@
 //! A hand that feels tissue: a device's thread a thousand times a second beside an engine that keeps up with life.
 //!
-//! `cargo run --release --example haptic [SECONDS]` lets a simulated hand press a probe into a small block, hold it,
-//! slide, and leave. The device is a mass that the hand's arm leads and the force holds back; a real one is read and
-//! written where `Device::tick` is (docs/interaction.md). It prints the force on the hand, how old what it is made of
-//! is, what a port costs, and whether the same poses give the same bits again.
+//! `cargo run --release --example haptic [SECONDS] [SCENE]` lets a simulated hand press a probe into a small block, hold
+//! it, slide, and leave; with a scene of a lens (scenes/lens_pressed.ron) into that, from its front. The device is a
+//! mass that the hand's arm leads and the force holds back; a real one is read and written where `Device::tick` is
+//! (docs/interaction.md). It prints the force on the hand, how old what it is made of is, what a port costs, and whether
+//! the same poses give the same bits again.
 
 use sinew::glam::DVec3;
 use sinew::port::{DevicePose, ToolPort, Touch, VirtualCoupling};
@@ -12,7 +13,7 @@ use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-const SCENE: &str = r#"(
+const BLOCK: &str = r#"(
     title: "A probe that a hand moves presses a block",
     duration: 3600,
     bodies: {"block": (mesh: Box(size: (0.03, 0.03, 0.015), cells: (7, 7, 4)), material: "tissue")},
@@ -25,8 +26,54 @@ const SCENE: &str = r#"(
     contacts: [Tool(tool: "probe", friction: 0.1)],
 )"#;
 
-/// Where the probe is at first (m).
-const START: DVec3 = DVec3::new(0.015, 0.015, 0.0215);
+/// What makes a scene of a lens one with a probe in a hand, in place of its loads.
+const LENS: [&str; 4] = [
+    "duration=3600",
+    "loads=[]",
+    r#"tools={"probe": (shape: Sphere(radius: 0.002), at: (0, 0, 0.0045),
+        port: (name: "device 0", speed: 0.3, follow: Proxy(stiffness: 400, damping: 0.1)))}"#,
+    r#"contacts=[Tool(tool: "probe", on: Set("front"), friction: 0.1)]"#,
+];
+
+/// What a hand touches, and how it goes.
+pub struct Touched {
+    path: Option<String>,
+    /// Where the probe is at first (m): half a millimetre above what it touches.
+    start: DVec3,
+    /// How far the arm leads it down, and then aside (m).
+    way: [f64; 2],
+}
+
+impl Touched {
+    /// A block of 1.5 cm.
+    pub fn block() -> Self {
+        Self { path: None, start: DVec3::new(0.015, 0.015, 0.0215), way: [3.5e-3, 2e-3] }
+    }
+
+    /// The lens of a scene file.
+    pub fn lens(path: &str) -> Self {
+        Self { path: Some(path.into()), start: DVec3::new(0.0, 0.0, 0.0045), way: [1.5e-3, 0.5e-3] }
+    }
+
+    /// The scene, with further values.
+    fn scene(&self, sets: &[&str]) -> Result<SceneFile, Error> {
+        let sets = |more: &[&str]| sets.iter().chain(more).map(|set| set.to_string()).collect::<Vec<_>>();
+        Ok(match &self.path {
+            None => SceneFile::from_text("haptic", BLOCK, std::path::Path::new("."), &sets(&[]))?,
+            Some(path) => SceneFile::load(path, &sets(&LENS))?,
+        })
+    }
+
+    /// Where the arm leads (m): in, hold, slide, out.
+    fn arm(&self, share: f64) -> DVec3 {
+        let ramp = |from: f64, until: f64| ((share - from) / (until - from)).clamp(0.0, 1.0);
+        let smooth = |x: f64| x * x * (3.0 - 2.0 * x);
+        let [down, aside] = self.way;
+        let depth = down * (smooth(ramp(0.05, 0.35)) - smooth(ramp(0.75, 0.95)));
+        self.start + DVec3::new(aside * smooth(ramp(0.45, 0.65)), 0.0, -depth)
+    }
+}
+
 /// A tick of the device.
 const TICK: Duration = Duration::from_millis(1);
 /// Damping of the device and the hand together (N s/m).
@@ -44,7 +91,7 @@ struct Device {
 pub struct Felt {
     /// When (s).
     pub time: f64,
-    /// How deep the hand is below the surface (m).
+    /// How deep the hand is below where it was at first (m).
     pub depth: f64,
     /// The force on the hand (N).
     pub force: DVec3,
@@ -63,20 +110,12 @@ impl Device {
     }
 }
 
-/// Where the arm leads (m): in by 3 mm, hold, slide by 2 mm, out.
-fn arm(share: f64) -> DVec3 {
-    let ramp = |from: f64, until: f64| ((share - from) / (until - from)).clamp(0.0, 1.0);
-    let smooth = |x: f64| x * x * (3.0 - 2.0 * x);
-    let depth = 3.5e-3 * (smooth(ramp(0.05, 0.35)) - smooth(ramp(0.75, 0.95)));
-    START + DVec3::new(2e-3 * smooth(ramp(0.45, 0.65)), 0.0, -depth)
-}
-
 /// The device's thread: never waits for the engine.
-fn servo(mut port: ToolPort, seconds: f64, done: &AtomicBool) -> Vec<Felt> {
+fn servo(touched: &Touched, mut port: ToolPort, seconds: f64, done: &AtomicBool) -> Vec<Felt> {
     // no stiffer than the hand can hold by a proxy that is two ticks old
     let stiffness = VirtualCoupling::largest_stiffness(DAMPING, 1e-3, 2e-3).min(400.0);
     let mut device =
-        Device { place: START, velocity: DVec3::ZERO, coupling: VirtualCoupling::new(stiffness, 0.0, 3.0) };
+        Device { place: touched.start, velocity: DVec3::ZERO, coupling: VirtualCoupling::new(stiffness, 0.0, 3.0) };
     let (mut all, mut sent) = (Vec::new(), VecDeque::new());
     let started = Instant::now();
     while started.elapsed().as_secs_f64() < seconds {
@@ -88,8 +127,8 @@ fn servo(mut port: ToolPort, seconds: f64, done: &AtomicBool) -> Vec<Felt> {
             sent.pop_front();
         }
         let age = sent.front().filter(|(number, _)| *number == touch.answers).map(|(_, sent)| time - sent);
-        let force = device.tick(&touch, arm(time / seconds), time);
-        all.push(Felt { time, depth: START.z - device.place.z, force, age });
+        let force = device.tick(&touch, touched.arm(time / seconds), time);
+        all.push(Felt { time, depth: touched.start.z - device.place.z, force, age });
         let next = TICK * all.len() as u32;
         std::thread::sleep(next.saturating_sub(started.elapsed()));
     }
@@ -98,14 +137,17 @@ fn servo(mut port: ToolPort, seconds: f64, done: &AtomicBool) -> Vec<Felt> {
 }
 
 /// Runs for so long (s) at the pace of life or of this machine; what the hand felt, the recording, and the state.
-pub fn press(options: &Options, seconds: f64) -> Result<(Vec<Felt>, InputRecording, Simulation), Error> {
-    let scene = SceneFile::from_text("haptic", SCENE, std::path::Path::new("."), &["real_time=true".into()])?;
-    let mut simulation = Simulation::new(&scene, options)?;
+pub fn press(
+    touched: &Touched,
+    options: &Options,
+    seconds: f64,
+) -> Result<(Vec<Felt>, InputRecording, Simulation), Error> {
+    let mut simulation = Simulation::new(&touched.scene(&["real_time=true"])?, options)?;
     let port = simulation.open_port("device 0")?;
     simulation.record_inputs();
     let done = AtomicBool::new(false);
     let felt = std::thread::scope(|scope| {
-        let device = scope.spawn(|| servo(port, seconds, &done));
+        let device = scope.spawn(|| servo(touched, port, seconds, &done));
         while !done.load(Ordering::Acquire) {
             simulation.advance_to(simulation.time() + 0.01)?;
         }
@@ -116,13 +158,22 @@ pub fn press(options: &Options, seconds: f64) -> Result<(Vec<Felt>, InputRecordi
 }
 
 /// Whether the same poses give the same bits, as fast as it goes.
-pub fn replays(options: &Options, recording: &InputRecording, simulation: &mut Simulation) -> Result<bool, Error> {
-    let scene = SceneFile::from_text("haptic", SCENE, std::path::Path::new("."), &[])?;
+pub fn replays(
+    touched: &Touched,
+    options: &Options,
+    recording: &InputRecording,
+    simulation: &mut Simulation,
+) -> Result<bool, Error> {
+    let scene = touched.scene(&[])?;
     let mut again = Simulation::new(&scene, options)?;
     again.replay_inputs(recording)?;
     again.advance(simulation.step_count())?;
-    Ok(again.displacements("block")? == simulation.displacements("block")?
-        && again.tool("probe")? == simulation.tool("probe")?)
+    for body in scene.scene.bodies.keys() {
+        if again.displacements(body)? != simulation.displacements(body)? {
+            return Ok(false);
+        }
+    }
+    Ok(again.tool("probe")? == simulation.tool("probe")?)
 }
 
 /// A plot of so many columns and rows, with the largest figure at its top.
@@ -167,9 +218,8 @@ fn ages(felt: &[Felt]) {
 }
 
 /// What a tick costs the device: a pose and a touch (ns).
-fn overhead(options: &Options) -> Result<f64, Error> {
-    let scene = SceneFile::from_text("haptic", SCENE, std::path::Path::new("."), &[])?;
-    let mut port = Simulation::new(&scene, options)?.open_port("device 0")?;
+fn overhead(touched: &Touched, options: &Options) -> Result<f64, Error> {
+    let mut port = Simulation::new(&touched.scene(&[])?, options)?.open_port("device 0")?;
     let (started, many) = (Instant::now(), 1_000_000);
     let mut sum = 0;
     for _ in 0..many {
@@ -182,9 +232,11 @@ fn overhead(options: &Options) -> Result<f64, Error> {
 
 #[allow(dead_code)]
 fn main() -> Result<(), Error> {
-    let seconds = std::env::args().nth(1).and_then(|word| word.parse().ok()).unwrap_or(3.0);
+    let mut arguments = std::env::args().skip(1);
+    let seconds = arguments.next().and_then(|word| word.parse().ok()).unwrap_or(3.0);
+    let touched = arguments.next().map_or_else(Touched::block, |path| Touched::lens(&path));
     let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
-    let (felt, recording, mut simulation) = press(&options, seconds)?;
+    let (felt, recording, mut simulation) = press(&touched, &options, seconds)?;
     let forces: Vec<f64> = felt.iter().map(|felt| felt.force.length()).collect();
     plot("force on the hand", "N", &forces, seconds);
     let depths: Vec<f64> = felt.iter().map(|felt| 1e3 * felt.depth.max(0.0)).collect();
@@ -198,9 +250,9 @@ fn main() -> Result<(), Error> {
         println!("{:.2} s of life simulated; {} of {} ticks late", summary.simulated, kept.late, kept.ticks);
     }
     println!("real-time factor {:.3}", summary.real_time_factor);
-    println!("a pose sent and a touch taken: {:.0} ns", overhead(&options)?);
+    println!("a pose sent and a touch taken: {:.0} ns", overhead(&touched, &options)?);
     println!("replayed from {} poses: the same bits: {}", recording.poses.len(), {
-        replays(&options, &recording, &mut simulation)?
+        replays(&touched, &options, &recording, &mut simulation)?
     });
     Ok(())
 }

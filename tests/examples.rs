@@ -34,13 +34,17 @@ fn a_touched_lens_pushes_back() {
 
 /// How long it takes is the machine's business; what the hand did gives the same bits again.
 #[test]
-fn a_hand_feels_a_block_and_is_replayed() {
-    let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
-    let (felt, recording, mut simulation) = haptic::press(&options, 0.6).unwrap();
-    let most = felt.iter().map(|felt| felt.force.length()).fold(0.0, f64::max);
-    assert!(most > 1e-3 && most <= 3.0, "{most} N");
-    assert!(felt.iter().all(|felt| felt.force.is_finite() && felt.depth < 4e-3));
-    assert!(!recording.poses.is_empty() && haptic::replays(&options, &recording, &mut simulation).unwrap());
+fn a_hand_feels_a_block_and_a_lens_and_is_replayed() {
+    let lens = haptic::Touched::lens(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/lens_pressed.ron"));
+    for touched in [haptic::Touched::block(), lens] {
+        let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
+        let (felt, recording, mut simulation) = haptic::press(&touched, &options, 0.6).unwrap();
+        let most = felt.iter().map(|felt| felt.force.length()).fold(0.0, f64::max);
+        assert!(most > 1e-3 && most <= 3.0, "{most} N");
+        assert!(felt.iter().all(|felt| felt.force.is_finite() && felt.depth < 4e-3));
+        let replayed = haptic::replays(&touched, &options, &recording, &mut simulation).unwrap();
+        assert!(!recording.poses.is_empty() && replayed);
+    }
 }
 
 /// A system of one's own shares the pass of those of the engine, on both backends, and does what a system on the host

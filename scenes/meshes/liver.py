@@ -1,4 +1,4 @@
-"""Makes liver_NODES.msh with Gmsh's Python module: python3 liver.py OUT.msh
+"""Makes liver.msh with Gmsh's Python module, and liver_skin.obj without: python3 liver.py OUT.msh, or OUT.obj
 
 A body of a liver's size and shape (in metres): a thick right lobe at x < 0 that tapers to a thin left one, domed above,
 hollow below, with a notch at the front edge. x points to the left of the patient, y to the back, z up. It is a drawing,
@@ -8,20 +8,19 @@ not a scan: radii and bends below are all there is to it.
 import math
 import sys
 
-import gmsh
-
 FINENESS = 5  # how often the twenty faces of an icosahedron are split
+SKIN = 4  # the same of the skin
 SIZE = 0.0115  # edges (m)
 
 
-def icosphere():
+def icosphere(fineness):
     t = (1 + math.sqrt(5)) / 2
     points = [(-1, t, 0), (1, t, 0), (-1, -t, 0), (1, -t, 0), (0, -1, t), (0, 1, t), (0, -1, -t), (0, 1, -t)]
     points += [(t, 0, -1), (t, 0, 1), (-t, 0, -1), (-t, 0, 1)]
     faces = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2)]
     faces += [(10, 7, 6), (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11)]
     faces += [(6, 2, 10), (8, 6, 7), (9, 8, 1)]
-    for _ in range(FINENESS):
+    for _ in range(fineness):
         middles, split = {}, []
 
         def middle(a, b):
@@ -57,8 +56,20 @@ def bent(direction):
     return x, y, z
 
 
-def main(out):
-    directions, faces = icosphere()
+def skin(out):
+    directions, faces = icosphere(SKIN)
+    with open(out, "w") as file:
+        for point in map(bent, directions):
+            file.write("v %.5f %.5f %.5f\n" % point)
+        for face in faces:
+            file.write("f %d %d %d\n" % tuple(row + 1 for row in face))
+    print(len(directions), "points,", len(faces), "triangles")
+
+
+def mesh(out):
+    import gmsh
+
+    directions, faces = icosphere(FINENESS)
     points = [bent(direction) for direction in directions]
     gmsh.initialize()
     gmsh.option.setNumber("General.Verbosity", 2)
@@ -96,4 +107,4 @@ def main(out):
     gmsh.finalize()
 
 
-main(sys.argv[1])
+skin(sys.argv[1]) if sys.argv[1].endswith(".obj") else mesh(sys.argv[1])

@@ -26,6 +26,7 @@ mod skins;
 mod start;
 mod suction;
 mod surface_contacts;
+mod surface_overlaps;
 mod sutures;
 mod time_step;
 mod tool_removal;
@@ -124,7 +125,7 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     start::deform(assembly, world, diagnostics);
     contacts::check(assembly, world, diagnostics);
     free_tools::check(assembly, world, diagnostics);
-    surface_contacts::check(assembly, world, diagnostics);
+    surface_overlaps::check(assembly, world, diagnostics);
     grasps::check(assembly, world, diagnostics);
     sutures::measure(world, diagnostics);
     let scene = &assembly.scene.scene;

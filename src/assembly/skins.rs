@@ -1,6 +1,7 @@
 //! Skins of bodies: files of triangles, placed as the meshes that carry them.
 
 use super::{Assembly, PlacedMesh};
+use crate::components::AlsoWritten;
 use crate::mesh::Mesh;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Body, SkinFile};
@@ -22,7 +23,9 @@ pub(super) fn insert(
     match surface(assembly, described, file) {
         Ok(surface) => {
             let mesh = Mesh { points: placed.points().to_vec(), cells: placed.mesh.cells.clone(), ..Mesh::default() };
-            world.entity_mut(body).insert(Skin::new(mesh, surface));
+            let mut body = world.entity_mut(body);
+            body.insert(Skin::new(mesh, surface));
+            file.also.map(AlsoWritten).into_iter().for_each(|also| _ = body.insert(also));
         }
         Err(message) => {
             diagnostics.error_at(format!("bodies.\"{name}\".skin.file").as_str(), message);

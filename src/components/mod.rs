@@ -86,7 +86,7 @@ pub use nodes::{
     OwnNumbers, PreviousPrescribedIncrement, SchemeLoss, WORK_NUMBERS,
 };
 #[doc(hidden)]
-pub use observation::{Cadence, HeldEnergies, HeldEnergy, Observed, Probe};
+pub use observation::{AlsoWritten, Cadence, HeldEnergies, HeldEnergy, Observed, Probe};
 #[doc(hidden)]
 pub use own_load::{LoadText, NodeAtRest, OfSystem, OwnLoad};
 #[doc(hidden)]

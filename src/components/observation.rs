@@ -1,7 +1,7 @@
 //! What is observed.
 
 use crate::error::Error;
-use crate::scene::schema::Quantity;
+use crate::scene::schema::{Quantity, SkinFormat};
 use bevy_ecs::prelude::*;
 use std::sync::Arc;
 
@@ -23,6 +23,10 @@ pub struct Probe {
     /// Whether it holds of each number the value of the largest size so far.
     pub peak: bool,
 }
+
+/// What the series of a body's skin is written as, beside VTU.
+#[derive(Component, Clone, Copy, Debug)]
+pub struct AlsoWritten(pub SkinFormat);
 
 /// Whether somebody may look at forces after the present step: if not, one pass over the nodes keeps them in registers and
 /// leaves [`InternalForce`](super::InternalForce) and [`ExternalForce`](super::ExternalForce) as they were.

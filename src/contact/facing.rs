@@ -6,7 +6,7 @@ use super::surfaces::{Placed, Point, Surfaces};
 use glam::DVec3;
 
 /// Surfaces face one another where the cosine between their normals is below this.
-const TURNED_AWAY: f64 = 0.2;
+pub const TURNED_AWAY: f64 = 0.2;
 
 /// What counts for nothing of a distance between two faces that are in a point's way, in edges: there the one that it
 /// faces more is. Nor is a wall one that rises no higher beside a point of a face.

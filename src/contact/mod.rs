@@ -16,7 +16,7 @@ pub use boxes::Tree;
 pub use candidates::Listed;
 pub use edges::{Crossing, Edge, distance};
 pub use face_points::{bilinear, face_points};
-pub use facing::{Faced, Facing};
+pub use facing::{Faced, Facing, TURNED_AWAY};
 pub use law::{Contact, ContactSet};
 pub use lists::{Finder, Lists};
 pub use shortlist::{Shortlist, Stays};

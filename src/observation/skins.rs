@@ -7,7 +7,7 @@ use crate::components::*;
 use crate::error::Error;
 use crate::mesh::Cells;
 use crate::mesh::topology::MOST_NODES;
-use crate::output::{Array, Frame, Series, Values};
+use crate::output::{Array, Frame, Series, SurfaceFrame, Values, write_surface};
 use crate::skins::{Carrier, Skin, normals};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -82,7 +82,7 @@ pub fn with_skins(world: &World) -> Vec<(Entity, String)> {
     all
 }
 
-/// Writes a body's skin as the next frame of its series.
+/// Writes a body's skin as the next frame of its series, and in the other format that the scene asks for.
 ///
 /// # Errors
 /// What the GPU says; files that cannot be written.
@@ -94,12 +94,12 @@ pub fn write(world: &mut World, body: Entity, series: &mut Series) -> Result<(),
     let displacement = single(&mut skin.points.iter().zip(&skin.rest).map(|(now, rest)| *now - *rest));
     let normal = single(&mut skin.normals.iter().copied());
     let number = bodies(world).iter().position(|other| *other == body).unwrap_or(0);
-    let body = vec![number as u32; skin.rest.len()];
+    let bodies = vec![number as u32; skin.rest.len()];
     let cells = Cells::triangles(&skin.triangles);
     let mut point_arrays = vec![
         Array { name: "displacement", components: 3, values: Values::F32(&displacement) },
         Array { name: "normal", components: 3, values: Values::F32(&normal) },
-        Array { name: "body", components: 1, values: Values::U32(&body) },
+        Array { name: "body", components: 1, values: Values::U32(&bodies) },
         Array { name: "element", components: 1, values: Values::I64(&skin.elements) },
         Array { name: "weights", components: MOST_NODES, values: Values::F32(skin.weights.as_flattened()) },
     ];
@@ -108,6 +108,11 @@ pub fn write(world: &mut World, body: Entity, series: &mut Series) -> Result<(),
     }
     let time = world.resource::<Clock>().time();
     let frame = Frame { time, points: &skin.rest, cells: &cells, point_arrays, cell_arrays: Vec::new() };
-    world.resource::<Cpu>().confine(|| series.write(&frame))?;
+    let path = world.resource::<Cpu>().confine(|| series.write(&frame))?;
+    if let Some(&AlsoWritten(format)) = world.get::<AlsoWritten>(body) {
+        let SkinState { points, normals, texture, triangles, .. } = &skin;
+        let surface = SurfaceFrame { time, points, normals, texture, triangles };
+        write_surface(&path.with_extension(format.ending()), format, &surface)?;
+    }
     Ok(())
 }

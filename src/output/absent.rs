@@ -1,7 +1,8 @@
 //! What stands for result files in a sinew without the feature `files`: there is no folder to write into, so nothing of
 //! it is ever called.
 
-use super::{Frame, OutputError};
+use super::{Frame, OutputError, SurfaceFrame};
+use crate::scene::schema::SkinFormat;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -53,6 +54,14 @@ pub fn write_vtu(path: &Path, _: &Frame<'_>) -> Result<(), OutputError> {
 /// # Errors
 /// As [`write_vtu`].
 pub fn write_table(path: &Path, _: &[&str], _: impl Iterator<Item = impl Serialize>) -> Result<(), OutputError> {
+    not_built(path)
+}
+
+/// As [`write_vtu`].
+///
+/// # Errors
+/// As [`write_vtu`].
+pub fn write_surface(path: &Path, _: SkinFormat, _: &SurfaceFrame<'_>) -> Result<(), OutputError> {
     not_built(path)
 }
 

@@ -20,6 +20,20 @@ pub struct Frame<'a> {
     pub cell_arrays: Vec<Array<'a>>,
 }
 
+/// A surface at one time, a row a point in all but `triangles`.
+pub struct SurfaceFrame<'a> {
+    /// Time (s).
+    pub time: f64,
+    /// Where the points are (m).
+    pub points: &'a [DVec3],
+    /// Outward normals, of length 1.
+    pub normals: &'a [DVec3],
+    /// Texture coordinates (u, v), v upwards; nothing of surfaces without.
+    pub texture: &'a [[f32; 2]],
+    /// By rows of `points`.
+    pub triangles: &'a [[u32; 3]],
+}
+
 /// A named array of a [`Frame`].
 pub struct Array<'a> {
     /// What ParaView shows.

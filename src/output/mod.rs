@@ -5,6 +5,7 @@
 //! | `sinew.json` | [`Folder::create`], the mark that a folder is an output of sinew |
 //! | `fields.pvd`, `fields_000000.vtu` ... | [`Series`], one VTU file a [`Frame`] |
 //! | `skin_BODY.pvd`, `skin_BODY_000000.vtu` ... | [`Series`], the skin of a body that has one |
+//! | `skin_BODY_000000.ply` or `.obj` ... | [`write_surface`], the same for others, where the scene asks for it |
 //! | `whole_mesh.vtu` | [`write_vtu`], the mesh of before elements were removed, where no frame has it |
 //! | `energy.csv`, one table a probe | [`Table`] |
 //! | `nodes.csv` | [`nodes::write`] |
@@ -29,11 +30,11 @@ pub mod nodes;
 pub mod summary;
 
 #[cfg(not(feature = "files"))]
-pub use absent::{Folder, Lock, Series, Table, write_table, write_vtu};
+pub use absent::{Folder, Lock, Series, Table, write_surface, write_table, write_vtu};
 pub use atomic::replace;
 pub use error::OutputError;
 #[cfg(feature = "files")]
-pub use files::{FIELDS, Folder, Lock, Series, Table, write_gmsh, write_table, write_vtu};
+pub use files::{FIELDS, Folder, Lock, Series, Table, write_gmsh, write_surface, write_table, write_vtu};
 pub use finite::not_finite;
-pub use frame::{Array, Frame, Values, WHOLE};
+pub use frame::{Array, Frame, SurfaceFrame, Values, WHOLE};
 pub use nodes::Node;

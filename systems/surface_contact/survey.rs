@@ -24,6 +24,15 @@ const OF_A_STEP: usize = 6;
 /// Which triangles a step looks at beyond those within thickness and motion (edges).
 pub(super) const MARGIN: f64 = 1e-2;
 
+impl SurfaceContacts {
+    /// How near points and faces of one body are at rest that are never in each other's way (m); nothing where no body
+    /// meets itself.
+    pub fn near_at_rest(&self) -> Option<f64> {
+        let itself = (0..self.bodies.len() as u32).filter_map(|body| self.meeting(body, body));
+        itself.map(|of| NEAR_AT_REST * (of.thickness + MARGIN * self.edge)).reduce(f64::max)
+    }
+}
+
 /// Finds the surfaces anew where elements are gone, and in the first step.
 pub(super) fn follow(
     contacts: &mut SurfaceContacts,
@@ -209,14 +218,8 @@ fn extent(corners: [u32; 3], element: &[u32], row: impl Fn(u32) -> u32, rest: &[
 
 /// Notes which points and faces of one body are near each other at rest.
 fn near_at_rest(contacts: &mut SurfaceContacts, rest: &[DVec3]) {
-    let count = contacts.bodies.len() as u32;
-    let itself = |body: u32| contacts.meeting(body, body);
-    if (0..count).all(|body| itself(body).is_none()) {
-        return;
-    }
-    let near = |body: u32| itself(body).map(|of| NEAR_AT_REST * (of.thickness + MARGIN * contacts.edge));
+    let Some(radius) = contacts.near_at_rest() else { return };
     let meets = |point: u32, face: u32, of_face: bool| point == face && contacts.meets(point, face, of_face);
-    let radius = (0..count).filter_map(near).fold(0.0, f64::max);
     let surface = &contacts.surface;
     let finder = Finder { surfaces: &surface.triangles, points: &surface.points, meets: &meets, apart: &[] };
     let cpu = Cpu::new(1, 0, Default::default());

@@ -3,6 +3,7 @@
 use crate::configurations::{Configuration, configurations, near};
 use glam::{DMat3, DVec3};
 use sinew::scene::{SceneFile, validate};
+use sinew::tools::Triangles;
 use sinew::{Folder, Simulation, Snapshot};
 use std::collections::BTreeMap;
 
@@ -24,9 +25,13 @@ fn net() -> String {
 }
 
 fn scene(elements: &str, more: &str) -> SceneFile {
+    scene_with("file: \"net.obj\"", elements, more)
+}
+
+fn scene_with(skin: &str, elements: &str, more: &str) -> SceneFile {
     let text = format!(
         "(duration: 0.05, bodies: {{\"b\": (mesh: Box(size: (20, 20, 10), cells: (4, 4, 2), elements: {elements}),
-            scale: 1e-3, rotate: (0, 0, 30), translate: (0, 0, 1), material: \"m\", skin: (file: \"net.obj\"))}},
+            scale: 1e-3, rotate: (0, 0, 30), translate: (0, 0, 1), material: \"m\", skin: ({skin}))}},
         materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.4), damping: 20)}}, {more})"
     );
     let files = BTreeMap::from([("net.obj".to_string(), net().into_bytes())]);
@@ -116,6 +121,53 @@ fn a_run_writes_a_series_of_each_skin() {
 }
 
 #[test]
+fn a_skin_is_also_written_for_programs_that_read_other_files() {
+    let run = &configurations()[0];
+    for (also, ending) in [("Ply", "ply"), ("Obj", "obj")] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut into = Folder::create(folder.path()).unwrap();
+        let mut simulation = start(run, &scene_with(&format!("file: \"net.obj\", also: {also}"), "Hex8", REMOVED));
+        simulation.write_into(&mut into).unwrap();
+        simulation.observe().unwrap();
+        simulation.finish().unwrap();
+        let skin = simulation.skin("b").unwrap();
+        let names = || -> Vec<String> {
+            let entries = std::fs::read_dir(folder.path()).unwrap();
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+        };
+        let of =
+            |ending: &str| names().iter().filter(|name| name.starts_with("skin_b_") && name.ends_with(ending)).count();
+        assert_eq!((of(".vtu"), of(&format!(".{ending}"))), (6, 6));
+        let path = folder.path().join(format!("skin_b_000005.{ending}"));
+        // the last bits, too
+        let read = Triangles::read(&path).unwrap();
+        assert!(skin.triangles.len() < 288);
+        let corners = |points: &[DVec3], triangles: &[[u32; 3]]| -> Vec<[DVec3; 3]> {
+            triangles.iter().map(|corners| corners.map(|row| points[row as usize])).collect()
+        };
+        let (found, written) = (corners(&read.points, &read.triangles), corners(&skin.points, &skin.triangles));
+        assert!(found == written, "{also}: {} triangles, {} of them read", written.len(), found.len());
+        let bytes = std::fs::read(&path).unwrap();
+        let normal = skin.normals[168].as_vec3().to_array();
+        match also {
+            "Obj" => assert!(
+                String::from_utf8(bytes)
+                    .unwrap()
+                    .contains(&format!("vn {:?} {:?} {:?}\n", normal[0], normal[1], normal[2]))
+            ),
+            _ => {
+                // 36 bytes a point, 13 a triangle
+                let end = bytes.len() - 13 * skin.triangles.len();
+                assert_eq!(bytes[end - 12..end], *bytemuck::bytes_of(&normal));
+            }
+        }
+        drop((simulation, into));
+        drop(Folder::create(folder.path()).unwrap());
+        assert!(!names().iter().any(|name| name.starts_with("skin_")), "{:?}", names());
+    }
+}
+
+#[test]
 fn what_is_no_skin_is_told() {
     let told = |skin: &str, more: &str| {
         let text = format!(
@@ -139,6 +191,14 @@ fn what_is_no_skin_is_told() {
     let near = |told: String, expected: &str| assert!(told.contains(expected), "{told}\nexpected {expected}");
     near(told("(file: \"nets.obj\")", ""), "there is no file `nets.obj`");
     near(told("(file: \"net.obj\", scale: 0)", ""), "`scale` must be above 0, found 0");
+    let unknown = SceneFile::from_memory(
+        "s.ron",
+        "(bodies: {\"b\": (skin: (file: \"a.obj\", also: Stl))})",
+        BTreeMap::new(),
+        &[],
+    );
+    let unknown = unknown.map(|scene| scene.diagnostics().to_string()).unwrap_or_else(|wrong| wrong.to_string());
+    assert!(["Stl", "Ply", "Obj"].iter().all(|word| unknown.contains(word)), "{unknown}");
     near(told("(file: \"net.obj\")", "copies: 3,"), "a skin on 3 copies of a mesh");
     near(told("(file: \"far.obj\")", ""), "coordinates must be numbers of at most 1e6 m");
     near(told("(file: \"text.obj\")", ""), "text.obj");

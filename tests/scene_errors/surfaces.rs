@@ -76,6 +76,50 @@ fn springs_are_as_stiff_as_the_step_allows() {
     }
 }
 
+/// What is said of copies of a cube of 10 cm with contact with itself, each so far from the last.
+fn told_of_copies(contact: &str, copies: u32, apart: &str) -> String {
+    let text = format!(
+        "(duration: 0.1, bodies: {{
+    \"a\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4)), material: \"m\", copies: {copies}, apart: {apart})}},
+materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
+contacts: [{contact}])"
+    );
+    told_of(&text, std::path::Path::new("."))
+}
+
+#[test]
+fn a_body_in_itself_at_the_start_is_told_with_its_nodes() {
+    for contact in ["Itself()", "Itself(body: \"a\")"] {
+        assert_eq!(told_of_copies(contact, 3, "(0, 0, 0.11)"), "");
+        let little = told_of_copies(contact, 2, "(0, 0, 0.098)");
+        // all of the two faces: those on the rim, too, which face each other
+        let wanted = "4: warning: 50 nodes of `a` are inside other parts of it at the start, the deepest by 2.000e-3 m | nodes: ";
+        assert!(little.starts_with(wanted) && little.contains("pushed out while a wave goes"), "{little}");
+        let deep = told_of_copies(contact, 2, "(0.01, 0.01, 0.08)");
+        let wanted = "of `a` are inside other parts of it at the start, ";
+        assert!(deep.contains("4: error: ") && deep.contains(wanted) && deep.contains("of them deep"), "{deep}");
+        let same = told_of_copies(contact, 2, "(0, 0, 0)");
+        assert!(same.contains("4: error: 196 nodes of `a` are inside other parts of it"), "{same}");
+    }
+}
+
+#[test]
+fn parts_of_a_body_that_never_meet_because_they_are_so_near_at_rest_are_told() {
+    // an edge is a quarter of 10 cm, or its diagonal
+    let near = told_of_copies("Itself(thickness: 0.004)", 2, "(0, 0, 0.104)");
+    let wanted = "4: warning: 50 nodes of `a` are within 6.";
+    assert!(near.starts_with(wanted), "{near}");
+    let known =
+        near.contains("of other parts of its surface at rest: they never meet") && near.contains("nodes: 100, 101");
+    assert!(known && near.contains("the narrowest gap, 4.000e-3 m, is at ("), "{near}");
+    // what touches never meets, and is not inside
+    let touching = told_of_copies("Itself()", 3, "(0, 0, 0.1)");
+    assert!(touching.starts_with("4: warning: 100 nodes of `a` are within "), "{touching}");
+    assert!(!touching.contains("inside"), "{touching}");
+    // sides and corners of one cube are no gap, however near
+    assert_eq!(told_of_copies("Itself(thickness: 0.05)", 2, "(0, 0, 0.3)"), "");
+}
+
 #[test]
 fn bodies_in_each_other_at_the_start_are_told_with_their_nodes() {
     let little = told(MEET, "(0, 0, 0.098)");

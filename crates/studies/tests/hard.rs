@@ -39,5 +39,5 @@ macro_rules! cases {
 cases!(
     everyday: h04 h15 h16 h27 h28 h34;
     long: h01 h02 h03 h05 h06 h07 h08 h09 h10 h11 h12 h13 h14 h17 h18 h19 h20 h21 h22 h23 h24 h25 h26 h29 h30 h31 h32 h33 h35
-        h36 h37 h38 h39 h40 h41 h42 h43 h44 h45 h46 h47 h48 h49 h50 h51 h52 h54 h55 h56 h57 h58 h59 h61 h63 h64 h68 h69 h70;
+        h36 h37 h38 h39 h40 h41 h42 h43 h44 h45 h46 h47 h48 h49 h50 h51 h52 h54 h55 h56 h57 h58 h59 h61 h62 h63 h64 h68 h69 h70;
 );

@@ -116,8 +116,9 @@ fn is_known(name: &str) -> bool {
         .and_then(|rest| rest.strip_suffix(".vtu"));
     let is_number = |digits: &str| digits.len() >= 6 && digits.bytes().all(|byte| byte.is_ascii_digit());
     let frame = number.is_some_and(is_number);
-    let of_skin = name.strip_prefix("skin_").and_then(|rest| rest.strip_suffix(".vtu"));
-    let skin = of_skin.and_then(|rest| rest.rsplit_once('_')).is_some_and(|(_, digits)| is_number(digits));
+    let of_skin = name.strip_prefix("skin_").and_then(|rest| rest.rsplit_once('.'));
+    let of_skin = of_skin.filter(|(_, ending)| ["vtu", "ply", "obj"].contains(ending));
+    let skin = of_skin.and_then(|(rest, _)| rest.rsplit_once('_')).is_some_and(|(_, digits)| is_number(digits));
     let number = name.strip_prefix("snapshot_").and_then(|rest| rest.strip_suffix(".sinew"));
     let snapshot = number.is_some_and(|digits| digits.len() >= 9 && digits.bytes().all(|byte| byte.is_ascii_digit()));
     frame || skin || snapshot || KNOWN.contains(&name)

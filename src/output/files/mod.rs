@@ -4,6 +4,7 @@ mod folder;
 mod gmsh;
 mod lock;
 mod pvd;
+mod surface;
 mod table;
 mod vtu;
 
@@ -11,5 +12,6 @@ pub use folder::Folder;
 pub use gmsh::write as write_gmsh;
 pub use lock::Lock;
 pub use pvd::{FIELDS, Series};
+pub use surface::write as write_surface;
 pub use table::{Table, write as write_table};
 pub use vtu::write as write_vtu;

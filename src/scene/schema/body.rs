@@ -61,11 +61,33 @@ pub struct Body {
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct SkinFile {
-    /// The file (STL, OBJ or PLY), its path relative to the scene file.
+    /// The file (STL, OBJ, PLY or glTF), its path relative to the scene file.
     pub file: String,
     /// What its coordinates are multiplied with to be those of the mesh.
     #[serde(default = "one")]
     pub scale: f64,
+    /// A further format for the skin's series, for programs that read no VTU files.
+    #[serde(default)]
+    pub also: Option<SkinFormat>,
+}
+
+/// A format for the series of a skin, beside VTU.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+pub enum SkinFormat {
+    /// PLY files, binary, one a frame.
+    Ply,
+    /// OBJ files, one a frame.
+    Obj,
+}
+
+impl SkinFormat {
+    /// How the names of its files end.
+    pub fn ending(self) -> &'static str {
+        match self {
+            SkinFormat::Ply => "ply",
+            SkinFormat::Obj => "obj",
+        }
+    }
 }
 
 fn single() -> u32 {

@@ -24,7 +24,7 @@ pub use accuracy::{Accuracy, AccuracyReference};
 pub use action::{Axis, Constraint, Curve, Removal, Threshold, When};
 pub use analysis::{Analysis, EquilibriumSearch, InitialState, SearchMethod};
 pub use attachment::{Attachment, Point};
-pub use body::{Body, MeshSource, Region, SkinFile, Start};
+pub use body::{Body, MeshSource, Region, SkinFile, SkinFormat, Start};
 pub use load::{Load, Share};
 pub use material::{
     Direction, ELASTIC_LAWS, ExponentialFibres, Fibres, Inversion, Material, OwnLaw, Prony, PronyTerm,

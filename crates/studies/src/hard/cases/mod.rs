@@ -172,6 +172,8 @@ pub const CASES: &[Case] = &[
     case!("h59" "pile" "pile of 12 cubes (in full 1000)", "weight within 1 %, energy falls, the same bits", every, shapes::pile),
     case!("h61" "grasp" "cube that is grasped, lifted, carried and let go",
         "weight within 1e-4; closing makes no energy, opening no momentum", every, holding::grasp),
+    case!("h62" "suture" "thread and glue that are drawn until they tear",
+        "bear their strength within 2 %; energy booked within 2 %", every, holding::suture),
     case!("h63" "suction" "plate that hangs on a tube that sucks",
         "Δp π r² within 3 %; comes off beyond that", every, taking::suction),
     case!("h64" "removal_by_tool" "tool that takes a volume a second from three meshes",

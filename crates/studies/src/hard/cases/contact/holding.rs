@@ -1,4 +1,4 @@
-//! What is held by forceps.
+//! What is held: by forceps, by a thread, by glue.
 
 use super::super::super::Trial;
 use super::measures::mass;
@@ -33,7 +33,7 @@ pub fn grasp(trial: &mut Trial<'_>) -> Result<(), Error> {
         jump = jump.max((now - before).abs() / largest);
         before = now;
     }
-    trial.most("energy that closing makes or takes, of the largest", jump, trial.bound(1e-6, 1e-5));
+    trial.most("energy that closing makes or takes, of the largest", jump, 1e-6);
     trial.holds("it is closed", simulation.tool("forceps")?.nodes == 16);
     simulation.advance_to(2.65)?;
     let reading = simulation.tool("forceps")?;
@@ -53,5 +53,39 @@ pub fn grasp(trial: &mut Trial<'_>) -> Result<(), Error> {
     }
     trial.most("change of momentum in a step while it opens, of what weight and damping make", jump, 1.0);
     trial.holds("it is open", simulation.tool("forceps")?.nodes == 0);
+    Ok(())
+}
+
+/// Draws on what holds two bodies together until nothing of it does; gates what it bore (N), and what is booked of the
+/// energy that bodies lost by it, which is told.
+fn torn(trial: &mut Trial<'_>, sets: &[String], what: &str, strength: f64) -> Result<f64, Error> {
+    let mut simulation = trial.start(sets)?;
+    let mut most = 0.0_f64;
+    while simulation.time() < 0.8 && simulation.attachment("seam")?.holds > 0 {
+        simulation.advance(1)?;
+        most = most.max(simulation.attachment("seam")?.force.length());
+    }
+    trial.near(format!("force that {what} bears (N)"), most, strength, 0.02);
+    simulation.advance_to(1.0)?;
+    let reading = simulation.attachment("seam")?;
+    trial.holds(&format!("{what} holds nothing any more"), reading.holds == 0 && reading.force.length() == 0.0);
+    let energies = simulation.energies()?;
+    let [spent, damped] = [energies.constraint_work, energies.damping_loss].map(|energy| energy.unwrap_or(f64::NAN));
+    let left = energy(&mut simulation)?;
+    let nobodys = (spent - damped - left - reading.loss) / spent;
+    trial.most(format!("energy that {what} lost and nobody booked, of what was spent"), nobodys, 0.02);
+    Ok(reading.loss)
+}
+
+/// H62.
+pub fn suture(trial: &mut Trial<'_>) -> Result<(), Error> {
+    let thread = trial.elements_of(&["low", "up"]);
+    let (stiffness, strength) = (50.0, 0.1);
+    let loss = torn(trial, &thread, "the thread", strength)?;
+    trial.near("energy of the thread when it tears (J)", loss, 0.5 * strength * strength / stiffness, 0.02);
+    let glued = "attachments=[Glue(name: \"seam\", bodies: (\"low\", \"up\"), normal: 1000, shear: 1000)]";
+    let glue = [&thread[..], &["bodies.up.translate=(0, 0, 0.02)".to_string(), glued.to_string()]].concat();
+    // 1000 Pa on a square centimetre
+    torn(trial, &glue, "the glue", strength)?;
     Ok(())
 }

@@ -60,7 +60,7 @@ pub fn stack(trial: &mut Trial<'_>) -> Result<(), Error> {
             (high.force + low.force).length() / weight,
             trial.bound(1e-10, 1e-5),
         );
-        trial.near(what("force on the table (N)"), -simulation.tool("table")?.force.z, 2.0 * weight, 2e-3);
+        trial.near(what("force on the table (N)"), -simulation.tool("table")?.force.z, 2.0 * weight, 1e-3);
         let left = 0.2 * (side / 3.0) * (weight / (side * side)) / young;
         trial.most(what("inside each other (m)"), high.penetration.max(low.penetration), left);
         if !short {
