@@ -1,11 +1,11 @@
 //! What contact between bodies costs on the CPU (C32): whole steps of three blocks without contact, with contact where
 //! nothing is near, and with a fifth of the surface touching, at rest and sliding, with nodes and with points of faces;
-//! how long lists take that tell what is near what, and what contact keeps in memory. The largest blocks have 10 092 triangles and 146 334 tetrahedra
-//! each.
+//! how long lists take that tell what is near what, and what contact keeps in memory. The largest blocks have 10 092
+//! triangles and 146 334 tetrahedra each.
 //!
 //! `cargo bench --bench contact`; `-- large` and `-- small` run only some of it, `-- near` only steps with a fifth that
-//! touches, for profiles (`-- near faces`, `-- far`). Steps are timed in blocks by turns, and the best of each counts: so
-//! other work on the machine does not. What lists take is added, spread over the steps that they serve.
+//! touches, for profiles (`-- near faces`, `-- far`). Steps are timed in blocks by turns, and the best of each counts:
+//! so other work on the machine does not. What lists take is added, spread over the steps that they serve.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use bevy_ecs::change_detection::DetectChangesMut;

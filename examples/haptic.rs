@@ -1,10 +1,10 @@
 //! A hand that feels tissue: a device's thread a thousand times a second beside an engine that keeps up with life.
 //!
-//! `cargo run --release --example haptic [SECONDS] [SCENE]` lets a simulated hand press a probe into a small block, hold
-//! it, slide, and leave; with a scene of a lens (scenes/lens_pressed.ron) into that, from its front. The device is a
-//! mass that the hand's arm leads and the force holds back; a real one is read and written where `Device::tick` is
-//! (docs/interaction.md). It prints the force on the hand, how old what it is made of is, what a port costs, and whether
-//! the same poses give the same bits again.
+//! `cargo run --release --example haptic [SECONDS] [SCENE]` lets a simulated hand press a probe into a small block,
+//! hold it, slide, and leave; with a scene of a lens (scenes/lens_pressed.ron) into that, from its front. The device is
+//! a mass that the hand's arm leads and the force holds back; a real one is read and written where `Device::tick` is
+//! (docs/interaction.md). It prints the force on the hand, how old what it is made of is, what a port costs, and
+//! whether the same poses give the same bits again.
 
 use sinew::glam::DVec3;
 use sinew::port::{DevicePose, ToolPort, Touch, VirtualCoupling};

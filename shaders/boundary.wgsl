@@ -1,6 +1,6 @@
 // Where prescribed nodes go, u = A·(X − center) + b; twin of systems/boundary.rs. compensation_of is in
-// compensation.wgsl, or generated where sums are not compensated; keep_previous_step in previous_prescribed_increment.wgsl,
-// or generated where nothing is counted.
+// compensation.wgsl, or generated where sums are not compensated; keep_previous_step in
+// previous_prescribed_increment.wgsl, or generated where nothing is counted.
 struct Motion {
     axes: u32, // bits 0, 1, 2: x, y, z
     signal: u32, // first of three slots: rows of A, with b's component

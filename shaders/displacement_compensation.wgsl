@@ -1,5 +1,5 @@
-// Compensated sums (Kahan 1965), for integrate: what rounding leaves out of a displacement or of its step goes into the next.
-// What displacements have too much of, a vector a node, then what steps have.
+// Compensated sums (Kahan 1965), for integrate: what rounding leaves out of a displacement or of its step goes into the
+// next. What displacements have too much of, a vector a node, then what steps have.
 @group(0) @binding(0) var<storage, read_write> displacement_compensation: array<f32>;
 
 // The same number, in a way that no compiler can look through: else (u + d) − u becomes d, and nothing is compensated.

@@ -1,5 +1,6 @@
-// Forces of deformed elements on their corners; twin of systems/element_forces.rs. two_pass.wgsl or patches.wgsl sums them.
-// The element's and the material's fragments say how, note_inverted or remove_inverted what becomes of J < LEAST_J; LEAST_J, isochoric_stress and viscous_pressure are generated.
+// Forces of deformed elements on their corners; twin of systems/element_forces.rs. two_pass.wgsl or patches.wgsl sums
+// them. The element's and the material's fragments say how, note_inverted or remove_inverted what becomes of J <
+// LEAST_J; LEAST_J, isochoric_stress and viscous_pressure are generated.
 @group(0) @binding(0) var<storage, read> rest_shape: array<f32>;
 
 // N

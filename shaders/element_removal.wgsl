@@ -1,5 +1,6 @@
-// Takes away the elements whose time has come; twin of systems/element_removal.rs. deactivate is generated from the block's
-// element type. criterion.wgsl sets the time of elements that pass a limit, removed_motion.wgsl counts their motion.
+// Takes away the elements whose time has come; twin of systems/element_removal.rs. deactivate is generated from the
+// block's element type. criterion.wgsl sets the time of elements that pass a limit, removed_motion.wgsl counts their
+// motion.
 @group(0) @binding(0) var<storage, read_write> rest_shape: array<f32>;
 @group(0) @binding(1) var<storage, read_write> alive: array<u32>;
 @group(0) @binding(2) var<storage, read> removal_step: array<u32>;

@@ -1,5 +1,5 @@
-// Exponential and logarithm by arithmetic and a few moved bits; twin of src/math/elementary.rs. What WGSL has may lose all
-// digits of a small argument, and differs from device to device.
+// Exponential and logarithm by arithmetic and a few moved bits; twin of src/math/elementary.rs. What WGSL has may lose
+// all digits of a small argument, and differs from device to device.
 
 // 2^k and e^r − 1 with x = k ln 2 + r
 fn exponential_parts(unlimited: f32) -> vec2<f32> {

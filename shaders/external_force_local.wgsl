@@ -1,5 +1,5 @@
-// Sums of loads at the nodes (N), in a kernel that clears, adds and uses them: they go to memory in those steps only after
-// which somebody may look.
+// Sums of loads at the nodes (N), in a kernel that clears, adds and uses them: they go to memory in those steps only
+// after which somebody may look.
 @group(0) @binding(0) var<storage, read_write> external_force: array<f32>;
 var<private> outer_force: vec3<f32>;
 

@@ -1,6 +1,6 @@
-// What a body's nodes come to, sixty-four at a time: ½ m d² (kg m²), the longest step, the square of the largest displacement
-// (m²); and displacements in the middle of the last step, where velocities are, for guard_elements.wgsl. Twin of the
-// sums in src/observation/sample.rs.
+// What a body's nodes come to, sixty-four at a time: ½ m d² (kg m²), the longest step, the square of the largest
+// displacement (m²); and displacements in the middle of the last step, where velocities are, for guard_elements.wgsl.
+// Twin of the sums in src/observation/sample.rs.
 struct GuardNodes {
     count: u32,
 }

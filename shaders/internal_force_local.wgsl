@@ -1,5 +1,5 @@
-// Forces of deformed elements at the nodes (N), in a kernel that sums them and uses them: they go to memory in those steps only
-// after which somebody may look.
+// Forces of deformed elements at the nodes (N), in a kernel that sums them and uses them: they go to memory in those
+// steps only after which somebody may look.
 @group(0) @binding(0) var<storage, read_write> internal_force: array<f32>;
 var<private> inner_force: vec3<f32>;
 

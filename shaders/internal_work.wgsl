@@ -1,6 +1,6 @@
-// Work against internal forces (J), summed over sixty-four invocations and kept in the place of the first one's node, for integrate:
-// what the guards compare with the energy that elements hold. INTERNAL_WORK_AT, GROUP_ROWS and step_before are generated; INVOCATIONS of the
-// kernel are whole sixty-fours.
+// Work against internal forces (J), summed over sixty-four invocations and kept in the place of the first one's node,
+// for integrate: what the guards compare with the energy that elements hold. INTERNAL_WORK_AT, GROUP_ROWS and
+// step_before are generated; INVOCATIONS of the kernel are whole sixty-fours.
 var<private> internal_work: f32;
 var<workgroup> internal_work_parts: array<f32, INVOCATIONS>;
 
@@ -16,8 +16,8 @@ fn kept(x: f32) -> f32 {
     return bitcast<f32>(bitcast<u32>(x) ^ step.zero);
 }
 
-// Adds what each sixty-four invocations have done since the last time to their sum and to what rounding has left out of it (Kahan
-// 1965); all invocations must call it.
+// Adds what each sixty-four invocations have done since the last time to their sum and to what rounding has left out of
+// it (Kahan 1965); all invocations must call it.
 fn add_up_internal_work(local: u32, node: u32) {
     internal_work_parts[local] = internal_work;
     internal_work = 0.0;

@@ -1,5 +1,5 @@
-// All steps of a submission of a small body, in one dispatch of one workgroup: one of which a step takes no longer than starting
-// kernels does. INVOCATIONS is generated, and `var<workgroup> step: Step`.
+// All steps of a submission of a small body, in one dispatch of one workgroup: one of which a step takes no longer than
+// starting kernels does. INVOCATIONS is generated, and `var<workgroup> step: Step`.
 struct StepRecords {
     count: u32, // steps of the submission
     steps: array<Step>,
@@ -11,8 +11,8 @@ fn sum_all(number: u32, local: u32, kept: u32) {}
 fn call_all(node: u32) {}
 fn finish_all(local: u32, node: u32) {}
 
-// `id` is 0. No 0 is written in its place: Mesa 22.3's software GPU compiles loops anew, while they run, of which only a uniform is
-// not known before, and has been seen to crash over it.
+// `id` is 0. No 0 is written in its place: Mesa 22.3's software GPU compiles loops anew, while they run, of which only
+// a uniform is not known before, and has been seen to crash over it.
 @compute @workgroup_size(INVOCATIONS)
 fn many_steps(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     for (var number = 0u; number < step_records.count; number++) {

@@ -1,4 +1,5 @@
-// Means of the change of volume around nodes, for elements with averaged nodal pressure; twin of systems/nodal_volume.rs.
+// Means of the change of volume around nodes, for elements with averaged nodal pressure; twin of
+// systems/nodal_volume.rs.
 @group(0) @binding(0) var<storage, read> rest_shape: array<f32>;
 @group(0) @binding(1) var<storage, read_write> element_volume: array<f32>;
 

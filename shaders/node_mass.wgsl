@@ -1,5 +1,5 @@
-// Lumped mass (kg) of the elements that are left, one block after the other. damp_node is in node_damping.wgsl, or generated
-// where nothing is damped.
+// Lumped mass (kg) of the elements that are left, one block after the other. damp_node is in node_damping.wgsl, or
+// generated where nothing is damped.
 struct NodeMass {
     count: u32, // nodes
     first: u32, // 1: the block is the body's first

@@ -1,10 +1,10 @@
-// The kernel of a block's patches where the nodes inside a patch move as soon as its forces are known: the stages of the pass over the
-// nodes, which does the rest. sum_patch is in patches.wgsl; LEAST_INTERIOR, INVOCATIONS and force_of_patch are
-// generated.
+// The kernel of a block's patches where the nodes inside a patch move as soon as its forces are known: the stages of
+// the pass over the nodes, which does the rest. sum_patch is in patches.wgsl; LEAST_INTERIOR, INVOCATIONS and
+// force_of_patch are generated.
 //
-// No workgroup sees what another moves: a node is inside a patch if no other patch of the body has it, a patch reads the
-// displacements of its own nodes only, and no stage reads those of other nodes than its own. Within a workgroup all displacements
-// have been read before the first barrier of sum_patch.
+// No workgroup sees what another moves: a node is inside a patch if no other patch of the body has it, a patch reads
+// the displacements of its own nodes only, and no stage reads those of other nodes than its own. Within a workgroup all
+// displacements have been read before the first barrier of sum_patch.
 
 // The functions of those stages, in their order: linked.
 fn call_all(node: u32) {}

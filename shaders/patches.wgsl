@@ -1,6 +1,7 @@
-// Sums element forces at the nodes of a patch, in workgroup memory: one invocation an element, as many batches at a time as the
-// workgroup of INVOCATIONS has room for. Corners of a batch that meet in a node take turns, in rounds that src/backend/patch_lists.rs
-// has found, batch after batch: a fixed order, without atomics. add_forces and the constants are generated.
+// Sums element forces at the nodes of a patch, in workgroup memory: one invocation an element, as many batches at a
+// time as the workgroup of INVOCATIONS has room for. Corners of a batch that meet in a node take turns, in rounds that
+// src/backend/patch_lists.rs has found, batch after batch: a fixed order, without atomics. add_forces and the constants
+// are generated.
 struct PatchLists {
     count: u32, // patches
     rounds: u32, // where in patch_lists the numbers of rounds begin, a byte a corner of each batch
@@ -50,8 +51,8 @@ fn add_force(element: u32, is_there: bool, batch: u32, corner: u32, force: vec3<
     }
 }
 
-// Uniform: all invocations of the workgroup sum the same patch. They write down the forces but those on the first `kept` nodes; all
-// are in patch_force, where every invocation may read them: a barrier follows the last sum.
+// Uniform: all invocations of the workgroup sum the same patch. They write down the forces but those on the first
+// `kept` nodes; all are in patch_force, where every invocation may read them: a barrier follows the last sum.
 fn sum_patch(number: u32, local: u32, kept: u32) {
     let first_node = patch_lists[number];
     let nodes = patch_lists[number + 1u] - first_node;

@@ -1,5 +1,5 @@
-// A pressure that follows the surface; twin of systems/pressure.rs. bears is in alive.wgsl, or generated where no element
-// ever goes; face_area_at is in face_area.wgsl.
+// A pressure that follows the surface; twin of systems/pressure.rs. bears is in alive.wgsl, or generated where no
+// element ever goes; face_area_at is in face_area.wgsl.
 struct PressureLoad {
     signal: u32, // slot of the pressure (Pa)
 }

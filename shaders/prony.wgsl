@@ -1,4 +1,5 @@
-// Viscosity; twin of src/materials/prony.rs. Generated: TERMS of the isochoric stress, then VOLUMETRIC_TERMS of the pressure.
+// Viscosity; twin of src/materials/prony.rs. Generated: TERMS of the isochoric stress, then VOLUMETRIC_TERMS of the
+// pressure.
 struct PronyTerm {
     stress: f32,
     memory: f32,

@@ -1,5 +1,5 @@
-// What is the same for all rows of a step; twin of src/backend/step.rs. SIGNALS is generated, and where `step` is: in a uniform, or
-// where many_steps.wgsl says.
+// What is the same for all rows of a step; twin of src/backend/step.rs. SIGNALS is generated, and where `step` is: in a
+// uniform, or where many_steps.wgsl says.
 struct Step {
     force_factor: f32, // Δt times the time between the middles of two steps, times the force scale (s²)
     half_step: f32, // half the time between the middles, in the first step Δt/2 (s)

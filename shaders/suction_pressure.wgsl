@@ -1,5 +1,5 @@
-// The share of the mouth that the faces close which suction_mouth.wgsl has marked, and the pressure that follows it. One
-// workgroup; criterion_due is generated.
+// The share of the mouth that the faces close which suction_mouth.wgsl has marked, and the pressure that follows it.
+// One workgroup; criterion_due is generated.
 struct SuctionMouth {
     faces: u32,
     nodes: u32,

@@ -1,4 +1,5 @@
-// Dead loads on the surface; twin of systems/traction.rs. bears is in alive.wgsl, or generated where no element ever goes.
+// Dead loads on the surface; twin of systems/traction.rs. bears is in alive.wgsl, or generated where no element ever
+// goes.
 struct TractionLoad {
     signal: u32, // slot of the force per area (Pa)
 }

@@ -1,4 +1,5 @@
-// Every element writes the forces on its corners, for the gather to sum: the scheme of two passes. write_forces is generated.
+// Every element writes the forces on its corners, for the gather to sum: the scheme of two passes. write_forces is
+// generated.
 @group(0) @binding(0) var<storage, read_write> element_force: array<f32>;
 
 fn write_force(element: u32, corner: u32, force: vec3<f32>) {

@@ -94,8 +94,8 @@ pub struct Instability {
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Criterion {
     /// `not_finite`, `inverted`, `energy`, `step` for a stable step that has gone to nothing, `speed` for a free tool
-    /// that goes or turns too far in a step, `implicit_step` for one that was not found, with its length (s), or `result`
-    /// for a result that is not finite.
+    /// that goes or turns too far in a step, `implicit_step` for one that was not found, with its length (s), or
+    /// `result` for a result that is not finite.
     pub name: &'static str,
     /// What was found, where it is a number.
     pub value: Option<f64>,

@@ -14,9 +14,9 @@ use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
 
-/// Prescribed nodes: u(t + Δt) = A·(X − center) + b. The step that leads there is written to [`DisplacementIncrement`] on
-/// the constrained axes, and `integrate` adds it as it adds all others. Fixed axes have a step of 0 from the start and
-/// need no work.
+/// Prescribed nodes: u(t + Δt) = A·(X − center) + b. The step that leads there is written to [`DisplacementIncrement`]
+/// on the constrained axes, and `integrate` adds it as it adds all others. Fixed axes have a step of 0 from the start
+/// and need no work.
 pub fn system() -> System {
     System::built_in_nodes::<Prescribed>(
         "boundary",

@@ -1,5 +1,5 @@
-//! What systems say of the forces that they bring, for who chooses steps and who tells energies: those of nodes by their
-//! trait, those of the host by functions of their own.
+//! What systems say of the forces that they bring, for who chooses steps and who tells energies: those of nodes by
+//! their trait, those of the host by functions of their own.
 
 use super::node_views::ForceSlopes;
 use super::system::System;

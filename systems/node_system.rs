@@ -35,8 +35,8 @@ pub trait NodeSystem: Component {
     /// Numbers that it keeps of each node for itself: 0 at the start, there from step to step, in snapshots and on a
     /// GPU. See [`NodeColumns::own`]; in WGSL `own(node, i)` and `set_own(node, i, value)`.
     const OWN_NUMBERS: usize = 0;
-    /// Columns, by name ([`Column::NAME`]), of which its WGSL looks at rows of other nodes than the one that it is called
-    /// for. It shares no kernel with what writes them: other invocations would do so meanwhile.
+    /// Columns, by name ([`Column::NAME`]), of which its WGSL looks at rows of other nodes than the one that it is
+    /// called for. It shares no kernel with what writes them: other invocations would do so meanwhile.
     const READS_ELSEWHERE: &'static [&'static str] = &[];
 
     /// Rows of the body's nodes that it is for, in any order, when the simulation is made; `None`: all of them, for

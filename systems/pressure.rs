@@ -25,8 +25,8 @@ pub struct Pressure {
     signal: usize,
 }
 
-/// Adds −p ∫ N_a n dA over the deformed faces, exact for triangles and for bilinear quadrilaterals; the force on a curved
-/// face is exact, too, as the weighted sum of those on flat ones.
+/// Adds −p ∫ N_a n dA over the deformed faces, exact for triangles and for bilinear quadrilaterals; the force on a
+/// curved face is exact, too, as the weighted sum of those on flat ones.
 ///
 /// Each loaded node sums what its own faces bring, in a fixed order. A face of a removed element bears no load, and the
 /// surface that removal uncovers is not loaded.

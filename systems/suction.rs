@@ -1,5 +1,5 @@
-//! `suction`: faces in the mouth of a tool are sucked into it. `shaders/suction.wgsl` is its twin; which faces those are
-//! and by what pressure, `suction_mouth` finds.
+//! `suction`: faces in the mouth of a tool are sucked into it. `shaders/suction.wgsl` is its twin; which faces those
+//! are and by what pressure, `suction_mouth` finds.
 
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};

@@ -14,9 +14,9 @@ use crate::shader;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
-/// Exposed faces in the mouth are sucked, those at its edge by the share that is within: in every tenth step it is looked
-/// which those are, and what share χ of the mouth they close, seen along its axis. An open mouth leaks: the pressure goes to Δp χ², and follows in
-/// the time that the scene names.
+/// Exposed faces in the mouth are sucked, those at its edge by the share that is within: in every tenth step it is
+/// looked which those are, and what share χ of the mouth they close, seen along its axis. An open mouth leaks: the
+/// pressure goes to Δp χ², and follows in the time that the scene names.
 ///
 /// A face is exposed while its element is there and its neighbour's is not: what removal bares is sucked at once.
 pub fn system() -> System {
@@ -147,8 +147,8 @@ struct Presence {
 }
 uniform!(Presence { count });
 
-/// For each body what tells which faces are there, block by block; for each tool what marks faces, what marks nodes, and
-/// what finds the pressure.
+/// For each body what tells which faces are there, block by block; for each tool what marks faces, what marks nodes,
+/// and what finds the pressure.
 fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let blocks = BlockKernels::of_world(world, buffers);
     let all: Vec<(Suction, Entity)> =

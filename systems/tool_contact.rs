@@ -27,8 +27,8 @@ pub(super) use stage::{ToolNodes, stage as tool_stage};
 /// tools. A node and a rigid tool are one equation: it is solved exactly, for any mass and step, and leaves the stable
 /// step as it is. The touching node stops: what it loses is an impact's plastic part, half a layer's kinetic energy.
 ///
-/// Friction holds the node at the tool's surface with at most μ times this step's normal force; who does not slide moves
-/// with the tool exactly. Nodes between several tools take turns, until their forces fit.
+/// Friction holds the node at the tool's surface with at most μ times this step's normal force; who does not slide
+/// moves with the tool exactly. Nodes between several tools take turns, until their forces fit.
 pub fn system() -> System {
     System::built_in_nodes::<ToolContacts>(
         "tool_contact",
@@ -295,9 +295,9 @@ impl ToolContacts {
         })
     }
 
-    /// Finds how far tools push a node from a place (m, from the reference) that would go by a step (m), and along which
-    /// axes it can; gives the sum (m). Tools take turns, and each looks anew where the node ends by now: surfaces are
-    /// curved, and distances that are no more than a bound of the true ones grow more slowly.
+    /// Finds how far tools push a node from a place (m, from the reference) that would go by a step (m), and along
+    /// which axes it can; gives the sum (m). Tools take turns, and each looks anew where the node ends by now: surfaces
+    /// are curved, and distances that are no more than a bound of the true ones grow more slowly.
     fn push_apart(
         &self,
         step: &ContactStep,

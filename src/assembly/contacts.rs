@@ -18,8 +18,8 @@ const DEEPEST: f64 = 0.5;
 /// How far a tool may go in a step, in edges: beyond, it may be through a surface before anybody sees it.
 pub(super) const FARTHEST: f64 = 0.5;
 
-/// How far a tool may go in a step without a word, as a share of half of what it measures across: who goes more than all
-/// of that could be beyond its middle, and would be let out on the other side.
+/// How far a tool may go in a step without a word, as a share of half of what it measures across: who goes more than
+/// all of that could be beyond its middle, and would be let out on the other side.
 const SAFELY: f64 = 0.5;
 
 /// Half of what a tool measures across, in edges, below which it may slip between nodes.

@@ -1,6 +1,6 @@
 //! How a GPU takes bodies through a step: all steps of a submission in one dispatch, nodes inside patches with their
-//! patch, or pass by pass. It is decided once, of the kernels and stages that systems describe, and is data: kernels are
-//! made as it says, and `explain` prints it.
+//! patch, or pass by pass. It is decided once, of the kernels and stages that systems describe, and is data: kernels
+//! are made as it says, and `explain` prints it.
 
 use super::Buffers;
 use super::kernel::Kernel;

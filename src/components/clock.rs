@@ -74,8 +74,8 @@ impl Clock {
     }
 
     /// What of the last displacement increment leads back to the middle of that step, where velocities are: before the
-    /// first step the column holds the initial velocity, at rest there is no middle, and implicit steps have velocities at
-    /// their ends.
+    /// first step the column holds the initial velocity, at rest there is no middle, and implicit steps have velocities
+    /// at their ends.
     pub fn back_to_middle(&self) -> f64 {
         if self.step > 0 && self.relaxation.is_none() && !self.velocities_at_ends { 0.5 } else { 0.0 }
     }

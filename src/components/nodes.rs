@@ -37,7 +37,8 @@ columns! {
     /// then the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. Exists
     /// when energies are asked for.
     Work(Reals) = "work", State, Nodes(WORK_NUMBERS), increments: LastThreeOf(WORK_NUMBERS);
-    /// Acceleration at the end of the last step (m/s²), a vector a node. Exists where implicit steps are of second order.
+    /// Acceleration at the end of the last step (m/s²), a vector a node. Exists where implicit steps are of second
+    /// order.
     Acceleration(Reals) = "acceleration", State, Nodes(3);
     /// Energy that the formula of implicit steps has taken from a node since the start (J), a number a node. Exists in
     /// implicit runs when energies are asked for.
@@ -50,8 +51,8 @@ columns! {
     /// Exists in a motion without [`Work`] whose energy is guarded.
     InternalWork(Vec<f32>) = "internal_work", State, Other, in "node_diagnostics";
     /// Displacement of the last step along prescribed axes (m), which `boundary` has written over in
-    /// [`DisplacementIncrement`], in f32 whatever the run's precision: a vector a node. Exists with [`InternalWork`] where
-    /// nodes are prescribed.
+    /// [`DisplacementIncrement`], in f32 whatever the run's precision: a vector a node. Exists with [`InternalWork`]
+    /// where nodes are prescribed.
     PreviousPrescribedIncrement(Vec<f32>) = "previous_prescribed_increment", State, Nodes(3), increments: All, in "node_diagnostics";
     /// Bits: which of those node systems that choose their nodes have chosen a node. Exists when there are some.
     ChosenBy(Vec<u32>) = "chosen_by", State, Nodes(1);

@@ -28,8 +28,8 @@ pub struct Probe {
 #[derive(Component, Clone, Copy, Debug)]
 pub struct AlsoWritten(pub SkinFormat);
 
-/// Whether somebody may look at forces after the present step: if not, one pass over the nodes keeps them in registers and
-/// leaves [`InternalForce`](super::InternalForce) and [`ExternalForce`](super::ExternalForce) as they were.
+/// Whether somebody may look at forces after the present step: if not, one pass over the nodes keeps them in registers
+/// and leaves [`InternalForce`](super::InternalForce) and [`ExternalForce`](super::ExternalForce) as they were.
 #[derive(Resource, Clone, Copy, Debug)]
 pub struct Observed(pub bool);
 

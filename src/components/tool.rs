@@ -10,10 +10,10 @@ use glam::{DMat3, DQuat, DVec3};
 
 columns! {
     /// What tools do to the nodes that they may touch: for each of [`ToolContacts::rows`] and each of its tools
-    /// [`TOUCH_NUMBERS`] numbers: the force on the node in the last step (N); 0 where it did not touch, 1 where it stuck
-    /// to the tool, 2 where it slid; since the start the length it has slid (m), the work that the tool has done and
-    /// what of that impact and friction have taken (J). Where a hand moves one of the tools, [`FELT_NUMBERS`] more: the
-    /// sum of the forces since its batch of steps began (N). Exists where tools may touch the body.
+    /// [`TOUCH_NUMBERS`] numbers: the force on the node in the last step (N); 0 where it did not touch, 1 where it
+    /// stuck to the tool, 2 where it slid; since the start the length it has slid (m), the work that the tool has done
+    /// and what of that impact and friction have taken (J). Where a hand moves one of the tools, [`FELT_NUMBERS`] more:
+    /// the sum of the forces since its batch of steps began (N). Exists where tools may touch the body.
     ToolTouch(Reals) = "tool_touch", State, Other;
 }
 

@@ -23,8 +23,8 @@ impl Box3 {
     }
 }
 
-/// Triangles in the order of their Morton numbers, and a binary tree over leaves of some of them: box i has the boxes 2i
-/// and 2i + 1, the first is number 1.
+/// Triangles in the order of their Morton numbers, and a binary tree over leaves of some of them: box i has the boxes
+/// 2i and 2i + 1, the first is number 1.
 #[derive(Clone, Debug, Default)]
 pub struct Tree {
     /// Their numbers.

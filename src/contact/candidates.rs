@@ -101,8 +101,8 @@ impl<'a> Candidates<'a> {
         if found.part == 0 || distance <= ON_IT * self.edge {
             return facing(normal, off.dot(normal));
         }
-        // the surface around a place that is nearest is nowhere nearer: not the flat surroundings of a point's own, nor a
-        // side that leads round a corner
+        // the surface around a place that is nearest is nowhere nearer: not the flat surroundings of a point's own, nor
+        // a side that leads round a corner
         if self.around(triangle, found.part) < NEARER * distance {
             return None;
         }

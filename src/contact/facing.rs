@@ -91,9 +91,9 @@ impl Surfaces {
         Faced { first, second, wakes: wakes.min(short.wakes) }
     }
 
-    /// Whether two faces are walls of a corner that the point is in: the second rises before the first. A node on an edge
-    /// has both its flanks, too. A point of a face is never on one, and a wall that falls off beside it, with a corner in
-    /// the first's plane or one that rounding lifts a little, would push it along the face.
+    /// Whether two faces are walls of a corner that the point is in: the second rises before the first. A node on an
+    /// edge has both its flanks, too. A point of a face is never on one, and a wall that falls off beside it, with a
+    /// corner in the first's plane or one that rounding lifts a little, would push it along the face.
     fn is_corner(&self, places: &[DVec3], point: &Point, [first, second]: [&Facing; 2], edge: f64) -> bool {
         let height = |at: DVec3| first.normal.dot(at - first.at);
         let rises = || match point.triangle {

@@ -79,8 +79,8 @@ mod tests {
         surfaces.faced(now, &point, listed, (|_| 0.1, 1.0), (short, stays))
     }
 
-    /// However nodes move that a shortlist allows for: what it leaves out changes nothing of what is faced. And it leaves
-    /// out most.
+    /// However nodes move that a shortlist allows for: what it leaves out changes nothing of what is faced. And it
+    /// leaves out most.
     #[test]
     fn shortlists_have_all_that_may_be_faced() {
         let mut random = fastrand::Rng::with_seed(11);

@@ -8,12 +8,13 @@ use crate::mesh::topology::tet10::{FAR, NEAR, POINTS, shape as shape_at};
 use glam::{DMat3, DVec3};
 
 /// Tetrahedron of second order, its edges straight or parabolas, with four points for what changes shape, and one
-/// pressure from its mean volume as in [`Hex8MeanDilatation`](super::Hex8MeanDilatation): it bends, and does not lock as
-/// ν → ½. Its WGSL twin is `shaders/tet10.wgsl`.
+/// pressure from its mean volume as in [`Hex8MeanDilatation`](super::Hex8MeanDilatation): it bends, and does not lock
+/// as ν → ½. Its WGSL twin is `shaders/tet10.wgsl`.
 ///
-/// Energy V U(θ̄) + Σ_q V_q Ψ_iso(F_q) + ½ k Σ_q V_q (J_q − J̄)², θ̄ = Σ V_q θ_q / V; forces are its exact derivative. By
-/// one pressure alone three modes that swell one end and shrink the other, without change of shape, had no energy, and
-/// a single layer bent half as far again as it should; with k = ⅔ μ they have one, and the stable step is as without.
+/// Energy V U(θ̄) + Σ_q V_q Ψ_iso(F_q) + ½ k Σ_q V_q (J_q − J̄)², θ̄ = Σ V_q θ_q / V; forces are its exact derivative.
+/// By one pressure alone three modes that swell one end and shrink the other, without change of shape, had no energy,
+/// and a single layer bent half as far again as it should; with k = ⅔ μ they have one, and the stable step is as
+/// without.
 ///
 /// With barycentric coordinates L a field is u₀ + Σ_k L_k e_k + Σ_ab 4 L_a L_b d_ab: the differences e_k = u_k − u₀ to
 /// the other three corners, and at each edge the deviation d_ab of its middle from halfway, so that a common
@@ -108,8 +109,8 @@ impl Element for Tet10 {
     const NAME: &'static str = "tet10";
     const CELL: CellKind = CellKind::Tet10;
     const POINTS: usize = 4;
-    /// The middle, too, which has the mean gradient: a face can be pulled through the opposite corner while J stays above
-    /// 0 at all four.
+    /// The middle, too, which has the mean gradient: a face can be pulled through the opposite corner while J stays
+    /// above 0 at all four.
     const CHECKED_POINTS: usize = 5;
     const ROWS: usize = 30;
     const VOLUME_ROW: usize = 27;

@@ -30,8 +30,8 @@ pub trait Law: Elastic<f64> + Elastic<f64, Of<f32>: Uniform> {
     fn with_moduli(shear: f64, bulk: f64) -> Self::Parameters;
 }
 
-/// An elastic law of one's own in Rust, written once over any kind of number: `impl<R: Real> Elastic<R> for Law<R>` and,
-/// for scenes to name it, this.
+/// An elastic law of one's own in Rust, written once over any kind of number: `impl<R: Real> Elastic<R> for Law<R>`
+/// and, for scenes to name it, this.
 ///
 /// The CPU runs it in kernels that are compiled for it, as for a built-in law. To run it on a GPU, on machines without
 /// vector registers and where single elements are looked at it is recorded: run once over numbers that note what is

@@ -1,4 +1,5 @@
-//! Rows of four patch-local numbers, in a core's cache, and registers filled from them and added to them: one row a lane.
+//! Rows of four patch-local numbers, in a core's cache, and registers filled from them and added to them: one row a
+//! lane.
 
 use super::SimdScalar;
 use bytemuck::allocation::zeroed_box;

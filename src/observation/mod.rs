@@ -43,9 +43,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Steps between two checks for numbers that are not finite and for elements turned inside out, at most, on the host. On
-/// a GPU its kernels look in every step, and the host asks them in every 256 at least; where systems of one's own run
-/// on the host meanwhile, in every 16 there, too.
+/// Steps between two checks for numbers that are not finite and for elements turned inside out, at most, on the host.
+/// On a GPU its kernels look in every step, and the host asks them in every 256 at least; where systems of one's own
+/// run on the host meanwhile, in every 16 there, too.
 pub const HOST_GUARD_STEPS: u64 = 16;
 /// The same where all systems run on the device.
 pub const DEVICE_GUARD_STEPS: u64 = 256;

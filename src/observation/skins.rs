@@ -21,8 +21,8 @@ pub struct SkinState {
     pub points: Vec<DVec3>,
     /// Outward normals there, of length 1; zero at points of no triangle.
     pub normals: Vec<DVec3>,
-    /// Texture coordinates (u, v) there, v upwards; nothing of skins without. Where they differ at a place of the surface
-    /// it has several points, with one normal.
+    /// Texture coordinates (u, v) there, v upwards; nothing of skins without. Where they differ at a place of the
+    /// surface it has several points, with one normal.
     pub texture: Vec<[f32; 2]>,
     /// The triangles that are left, by rows of `points`, the right-hand normal outwards.
     pub triangles: Vec<[u32; 3]>,

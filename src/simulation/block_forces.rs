@@ -48,8 +48,8 @@ impl<'w> BlockForces<'w> {
         })
     }
 
-    /// The same block without a history, with each corner of each element a node of its own, and forces one after the other as in the
-    /// scheme of two passes: corner `a` of the element of a row is node `row·nodes + a`.
+    /// The same block without a history, with each corner of each element a node of its own, and forces one after the
+    /// other as in the scheme of two passes: corner `a` of the element of a row is node `row·nodes + a`.
     pub fn apart(self) -> Self {
         let nodes = node_count(self.block.kind);
         let count = self.connectivity.len();

@@ -184,8 +184,8 @@ fn of_the_cpu(scene: &Scene) -> Option<[&'static str; 2]> {
     }
 }
 
-/// Takes a GPU for the run, which says in the plan how it takes bodies through it, and makes the kernels of all its passes
-/// ready, in the order in which a step dispatches them.
+/// Takes a GPU for the run, which says in the plan how it takes bodies through it, and makes the kernels of all its
+/// passes ready, in the order in which a step dispatches them.
 fn kernels_on(
     gpu: Gpu,
     schedule: &[Scheduled<'_>],

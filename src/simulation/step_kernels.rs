@@ -9,8 +9,8 @@ use crate::backend::node_stage::{NodeStage, node_kernels};
 use crate::systems::{OnDevice, System};
 use bevy_ecs::prelude::*;
 
-/// The kernels of each pass of a plan, whose `systems` stand as in the plan, and how each body is taken through them: as
-/// the plan says, or as it is decided here where no GPU runs it. A kernel that sums forces and moves nodes is among
+/// The kernels of each pass of a plan, whose `systems` stand as in the plan, and how each body is taken through them:
+/// as the plan says, or as it is decided here where no GPU runs it. A kernel that sums forces and moves nodes is among
 /// those of the pass that moves the nodes.
 pub(super) fn step_kernels(
     plan: &Plan,

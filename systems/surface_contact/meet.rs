@@ -82,7 +82,8 @@ pub(super) fn forget<T: Scalar>(contacts: &mut SurfaceContacts, now: &[u32], bod
         let kept = contacts.kept(point);
         let touch = bodies[kept.body].kept_mut(kept);
         set_vector(touch, 0, DVec3::ZERO);
-        // as deep as a point may be inside that never faced anything, so that a run that goes on from here finds the same
+        // as deep as a point may be inside that never faced anything, so that a run that goes on from here finds the
+        // same
         touch[3] = T::default();
         touch[4] = T::from_f64(FREE);
         touch[5] = T::default();

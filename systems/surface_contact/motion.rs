@@ -19,8 +19,8 @@ const GAP: u32 = 16;
 /// Triangles whose normals a task finds.
 const TRIANGLES_A_TASK: usize = 1024;
 
-/// How far nodes may move before shortlists are begun anew, in edges: at least and at most; and for how many steps of the
-/// fastest node, between these.
+/// How far nodes may move before shortlists are begun anew, in edges: at least and at most; and for how many steps of
+/// the fastest node, between these.
 const STAYS: [f64; 2] = [2e-3, 2e-2];
 const STEPS_OF_SHORTLISTS: f64 = 20.0;
 

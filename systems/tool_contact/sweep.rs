@@ -11,7 +11,8 @@ const TURNS: usize = 64;
 /// How near is there, as a share of what a node may go unseen.
 const NEAR: f64 = 1e-3;
 
-/// The plane that a tool's surface has where a node first meets it, in the tool's frame: the outward normal, and a place.
+/// The plane that a tool's surface has where a node first meets it, in the tool's frame: the outward normal, and a
+/// place.
 pub(super) type Plane = (DVec3, DVec3);
 
 impl Touch {

@@ -27,8 +27,8 @@ fn patch(run: &Configuration, elements: &str, cells: (u32, u32), contact: &str) 
     (worst, simulation.contact("high").unwrap().force.z)
 }
 
-/// Stresses with points of faces are off the pressure by less than a bound, after one sweep and after eight, and after one
-/// by less than a fifth of what nodes leave.
+/// Stresses with points of faces are off the pressure by less than a bound, after one sweep and after eight, and after
+/// one by less than a fifth of what nodes leave.
 fn is_even(run: &Configuration, elements: &str, cells: (u32, u32)) {
     // quadratic shape functions ask for no force at the corners of a face, and its four flat triangles give them theirs
     let (of_one, of_eight) = if elements == "Tet10" { (0.15, 0.16) } else { (0.025, 0.015) };

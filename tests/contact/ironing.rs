@@ -4,7 +4,8 @@ use crate::configurations::configurations;
 use sinew::components::Precision;
 
 /// C14 between bodies: pressed in by a tenth of the radius and drawn over ten faces, four of them on the radius of
-/// contact. The force along the way is μ times that down but for what friction draws along, which leans against the ball.
+/// contact. The force along the way is μ times that down but for what friction draws along, which leans against the
+/// ball.
 #[test]
 #[ignore = "long"]
 fn a_ball_is_drawn_over_a_block_with_an_even_force() {

@@ -84,17 +84,17 @@ fn tools_push_the_same_nodes_with_the_same_forces() {
             else {
                 return;
             };
-            // directions that a grid gives are those of differences of distances; what several tools hand on to each other
-            // as deep as here has not settled after twelve turns; a node that is held along some axes is pushed along
-            // the others, as much farther as its normal leans
+            // directions that a grid gives are those of differences of distances; what several tools hand on to each
+            // other as deep as here has not settled after twelve turns; a node that is held along some axes is pushed
+            // along the others, as much farther as its normal leans
             let rounding = match (of_grid || several, effects.moved) {
                 (true, _) => 1e-3,
                 (false, true) => 1e-4,
                 (false, false) => 300.0 * UNIT,
             };
-            // the force is to_force times a depth, on whose longest way are some thirty roundings, and some six in each of
-            // twelve turns, and three times that for the direction of a short slip, of lengths up to the
-            // body's size or to the step itself, whichever is longer
+            // the force is to_force times a depth, on whose longest way are some thirty roundings, and some six in each
+            // of twelve turns, and three times that for the direction of a short slip, of lengths up to the body's size
+            // or to the step itself, whichever is longer
             let bound = |pair: &Pair, body: Entity, node: usize| {
                 let world = pair.before();
                 let clock = world.resource::<Clock>();

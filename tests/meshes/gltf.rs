@@ -1,4 +1,5 @@
-//! Surfaces with texture coordinates, as glTF and OBJ. Of glTF: where their numbers are, what nodes and modes make of them, and what is refused.
+//! Surfaces with texture coordinates, as glTF and OBJ. Of glTF: where their numbers are, what nodes and modes make of
+//! them, and what is refused.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

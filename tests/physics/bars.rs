@@ -83,8 +83,8 @@ fn clamped_beam_swings_at_0_2798_hertz() {
 
 /// Stiff (E = 3e4 Pa), so that it hardly lengthens (.1 %: the spin falls by that), and viscous, so that it comes to
 /// rest within its own length. Across, the load of its own width is ρω² b²/12 = .33 Pa. f32: u is rounded by up to
-/// 3.7e-9 m (half of its last place, .06 to .13 m), two nodes at worst against each other over h = .005 m: with κ = 1e5 Pa
-/// .15 Pa from each of three strains, .45 Pa or .9 % together, beside what f64 is allowed.
+/// 3.7e-9 m (half of its last place, .06 to .13 m), two nodes at worst against each other over h = .005 m: with κ = 1e5
+/// Pa .15 Pa from each of three strains, .45 Pa or .9 % together, beside what f64 is allowed.
 #[test]
 fn spinning_bar_bears_its_centrifugal_load() {
     for run in configurations() {

@@ -115,8 +115,8 @@ fn is_never_below_the_true_one_of_ten_node_tetrahedra() {
     is_never_below::<Tet10>(ElementKind::Tet10);
 }
 
-/// The bound knows which nodes have how much of the mass, and the 64th norm of ten eigenvalues is at most 3.7 % above the
-/// largest: it was 1.02 to 1.07 of the true ω, where one by the least share would be 2.3 of it.
+/// The bound knows which nodes have how much of the mass, and the 64th norm of ten eigenvalues is at most 3.7 % above
+/// the largest: it was 1.02 to 1.07 of the true ω, where one by the least share would be 2.3 of it.
 #[test]
 fn is_near_the_true_one_of_ten_node_tetrahedra() {
     let mut random = Random(33);

@@ -1,5 +1,6 @@
-//! The pressed lens in implicit steps against explicit ones: passes over all forces, and errors over time. Of a load that
-//! is slow against the lowest mode (72 Hz) implicit steps take a fraction of the passes; let go at once, they damp.
+//! The pressed lens in implicit steps against explicit ones: passes over all forces, and errors over time. Of a load
+//! that is slow against the lowest mode (72 Hz) implicit steps take a fraction of the passes; let go at once, they
+//! damp.
 
 use crate::configurations::scene_of;
 use crate::implicit::options;
@@ -7,8 +8,8 @@ use sinew::components::Precision;
 use sinew::{Error, Simulation};
 use std::path::Path;
 
-/// The lens of `lens_pressed.ron`: the history of the mean displacement of its front in steps of 10 ms, and what it took.
-/// `None` where a step was not found.
+/// The lens of `lens_pressed.ron`: the history of the mean displacement of its front in steps of 10 ms, and what it
+/// took. `None` where a step was not found.
 fn lens(solver: &str, curve: &str, duration: f64) -> Option<(Vec<f64>, Simulation)> {
     let text = std::fs::read_to_string("scenes/lens_pressed.ron").unwrap();
     let text = text.replace("duration: 0.2,", &format!("duration: {duration}, {solver}"));

@@ -250,8 +250,8 @@ fn work_on_mass_that_is_gone_stays_booked() {
             Prescribed(on: Plane(normal: (1, 0, 0), at: 6), displacement: (0.6, 0, 0), curve: Smooth(end: 0.8))],
         removal: [(on: Box(min: (5, 0, 0), max: (6, 1, 0.7)), when: At(0.4))]";
     // the work of a step is that of the mean of the forces at its ends: where a force goes that does 1.4 kW, half of it
-    // over a step of 1 ms is not there, 0.7 J of 590 to 920 J (and half of that with half the step); nodal means jump by
-    // 21 J of 829 J
+    // over a step of 1 ms is not there, 0.7 J of 590 to 920 J (and half of that with half the step); nodal means jump
+    // by 21 J of 829 J
     balances(rest, 500, 0.2, [1.2e-3, 3e-2]);
 }
 

@@ -13,7 +13,8 @@ use sinew::mesh::generators::ellipsoid_mesh;
 use sinew::mesh::{ElementKind, Mesh, SurfaceFace};
 use std::collections::BTreeSet;
 
-/// Derivatives of the forces of some elements at rest by the displacements of their nodes (N/m), as central differences.
+/// Derivatives of the forces of some elements at rest by the displacements of their nodes (N/m), as central
+/// differences.
 fn stiffness(points: &[DVec3], elements: &[Vec<usize>]) -> Vec<Vec<f64>> {
     let (size, h) = (3 * points.len(), 1e-6);
     let mut k = vec![vec![0.0; size]; size];
@@ -52,9 +53,9 @@ fn six_modes_are_without_energy() {
 }
 
 /// Closed form 5: a cantilever under a force at its end, Timoshenko's deflection 1.344633e-3 m at 1e-5 N, where as many
-/// 4-node tetrahedra are several times too stiff. The change of volume that goes with bending costs ⅔ μ within an element
-/// in place of κ: one layer is too soft by 13 %, two layers by half a percent (with one pressure and no more 1.47 and
-/// 1.03, with a pressure a point 0.925 and 0.969).
+/// 4-node tetrahedra are several times too stiff. The change of volume that goes with bending costs ⅔ μ within an
+/// element in place of κ: one layer is too soft by 13 %, two layers by half a percent (with one pressure and no more
+/// 1.47 and 1.03, with a pressure a point 0.925 and 0.969).
 #[test]
 #[ignore = "long"]
 fn one_layer_bends_and_two_bend_as_they_should() {

@@ -67,8 +67,8 @@ fn column_sags_by_its_weight() {
             simulation.advance(steps).unwrap();
             let tip = -simulation.probe("tip").unwrap()[2];
             let what = format!("{}, {elements}, g = {gravity}", run.name);
-            // weight goes with lumped masses, of which the corners of the column have more than their share of stiffness:
-            // 5.5e-3 with one cell across, 1.1e-3 with two
+            // weight goes with lumped masses, of which the corners of the column have more than their share of
+            // stiffness: 5.5e-3 with one cell across, 1.1e-3 with two
             let [small, large] = if elements == "Tet10" { [1.5e-3; 2] } else { [1e-4; 2] };
             if gravity < 1.0 {
                 near(&what, tip, 4.310455e-6, 4.310455e-6, run.bound(small, small + 1e-4));

@@ -1,8 +1,8 @@
 //! Suction (C28): a closed mouth holds by Δp π r², an open one by χ² of that of what closes it; who is sucked and who
 //! sucks feel the same.
 //!
-//! Faces at the mouth's edge count by the share that is within: at six faces on the radius the area is that of the circle
-//! to .5 %, so that χ² times it is Δp π r² to 1.5 %; 3 % are allowed.
+//! Faces at the mouth's edge count by the share that is within: at six faces on the radius the area is that of the
+//! circle to .5 %, so that χ² times it is Δp π r² to 1.5 %; 3 % are allowed.
 
 use crate::configurations::{Configuration, configurations, near, scene_of};
 use sinew::components::Precision;

@@ -1,7 +1,7 @@
 //! Needles that go farther in a step than they are thick.
 //!
-//! A node that a tool first meets with a plane of its surface ends on that plane: of a needle that comes down on it, below
-//! the needle by its radius, to rounding of its place (1e-12 of the body's size in f64, 1e-6 in f32).
+//! A node that a tool first meets with a plane of its surface ends on that plane: of a needle that comes down on it,
+//! below the needle by its radius, to rounding of its place (1e-12 of the body's size in f64, 1e-6 in f32).
 
 use crate::configurations::{configurations, near, scene_of};
 use glam::DVec3;

@@ -1,8 +1,8 @@
 //! Tools that take elements: how much is gone, what is left, what is counted.
 //!
-//! Volume: a tool that takes Q in a second from what is in its reach has taken Q t after t, to one element, on any mesh.
-//! Surface: every edge belongs to an even number of faces. Mass: ρ times the volume that is gone. Energy: what bodies
-//! hold and have lost is what loads and constraints have given.
+//! Volume: a tool that takes Q in a second from what is in its reach has taken Q t after t, to one element, on any
+//! mesh. Surface: every edge belongs to an even number of faces. Mass: ρ times the volume that is gone. Energy: what
+//! bodies hold and have lost is what loads and constraints have given.
 
 use crate::configurations::{Configuration, configurations, near, scene_of};
 use sinew::components::Precision;

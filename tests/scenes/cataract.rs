@@ -109,8 +109,8 @@ impl Monitor {
         assert!(edges.values().all(|count| count % 2 == 0), "an edge with an odd number of faces");
     }
 
-    /// The nucleus is in two: of the pieces of it that no node ties to each other, two are a tenth of it at least (6 mm³),
-    /// and all others together less than the tip takes for a crumb.
+    /// The nucleus is in two: of the pieces of it that no node ties to each other, two are a tenth of it at least (6
+    /// mm³), and all others together less than the tip takes for a crumb.
     fn two_halves(&mut self) {
         let alive = self.simulation.fields("lens").unwrap().alive;
         let mesh = Mesh::read(format!("{}/scenes/meshes/lens_814.msh", env!("CARGO_MANIFEST_DIR")), false).unwrap();

@@ -1,4 +1,5 @@
-//! The same passes as before: what a step of each shipped scene consists of on the CPU and on a GPU, kept in `passes.ron`.
+//! The same passes as before: what a step of each shipped scene consists of on the CPU and on a GPU, kept in
+//! `passes.ron`.
 //!
 //! A change that is not meant to regroup systems changes none of it; a commit that does says why, and writes it anew:
 //! `SINEW_GOLDEN=write cargo test --test scenes passes`. No GPU is needed.

@@ -4,8 +4,8 @@ use super::{near, reference, scene};
 use sinew::Simulation;
 
 /// What a quarter of the ball feels (N): Hertz' force on a half space, times 1.474 for a layer as thick as the ball's
-/// radius that is pressed by a tenth of it, from an axisymmetric solution of linear elasticity with the ball's own shape
-/// (the formula of Dimitriadis et al. 2002 has 1.452).
+/// radius that is pressed by a tenth of it, from an axisymmetric solution of linear elasticity with the ball's own
+/// shape (the formula of Dimitriadis et al. 2002 has 1.452).
 fn on_the_ball(young: f64) -> f64 {
     let (radius, depth, poisson) = (5e-3_f64, 5e-4_f64, 0.45);
     1.474 * 4.0 / 3.0 * young / (1.0 - poisson * poisson) * radius.sqrt() * depth.powf(1.5) / 4.0

@@ -64,8 +64,8 @@ fn momentum_stays_and_energy_is_below_its_bound() {
         assert!(change <= 1e-12 * scale, "momentum changed by {change} of {scale}");
         let [earlier, later] = [&before, &set].map(|set| kinetic(&masses, &set.steps));
         assert!(least > 0.0 || later <= earlier * (1.0 + 1e-12), "{later} of {earlier} J");
-        // the bound of one sweep: each contact takes at least what a point of its own would lose, and gives at most what
-        // that would get
+        // the bound of one sweep: each contact takes at least what a point of its own would lose, and gives at most
+        // what that would get
         if sweeps == 1 {
             let most: f64 = before
                 .contacts

@@ -92,8 +92,8 @@ fn inputs() -> Kinematics<Recorded> {
     Kinematics { green_strain: six(0), adjugate_c: six(6), volume_change, j, true_j, j_m23 }
 }
 
-/// Elements and shaders know one kind of strain measures for laws of one's own: those that [`Elastic`] gives a law which
-/// says nothing of them. What is computed from the same numbers in the same way is the same value of a graph.
+/// Elements and shaders know one kind of strain measures for laws of one's own: those that [`Elastic`] gives a law
+/// which says nothing of them. What is computed from the same numbers in the same way is the same value of a graph.
 fn check_measures<L: Elastic<f64>>(law: &L) -> Result<(), Untranslatable> {
     let gradient = || Mat3([0, 3, 6].map(|row| [0, 1, 2].map(|column| Recorded::input(row + column))));
     let numbers = |k: &Kinematics<Recorded>| {

@@ -112,8 +112,8 @@ pub struct Topology {
     pub edges: &'static [[usize; 2]],
     /// Faces by local nodes, counter-clockwise seen from outside; none but of cells that fill space.
     pub faces: &'static [Face],
-    /// The flat polygons that a cell of two dimensions is taken for where flat ones are needed: in pictures, and by rays
-    /// and areas; a triangle repeats its last node.
+    /// The flat polygons that a cell of two dimensions is taken for where flat ones are needed: in pictures, and by
+    /// rays and areas; a triangle repeats its last node.
     pub facets: &'static [[usize; 4]],
     /// VTK's types: the first is written, all are read.
     pub vtk: &'static [Listing],
@@ -203,8 +203,8 @@ pub struct Solid {
     /// Three neighbours of each corner at which the Jacobian has to be looked at, so that corner and neighbours make a
     /// right-handed frame; none where the determinant is the same everywhere, or edges may be curved.
     pub frames: &'static [[usize; 4]],
-    /// Places of the reference cell at which the Jacobian of the shape functions has to be looked at, where edges may be
-    /// curved.
+    /// Places of the reference cell at which the Jacobian of the shape functions has to be looked at, where edges may
+    /// be curved.
     pub samples: &'static [[f64; 3]],
     /// Mean edges along the three directions (m); their triple product is proportional to the determinant in the
     /// middle.

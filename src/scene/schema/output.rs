@@ -33,8 +33,8 @@ pub enum OutputField {
     InternalForce,
     /// Sum R of all loads on each node (N), at the beginning of the step that led there.
     ExternalForce,
-    /// What tools, other bodies and the body itself do to each node where they touch it (N), at the beginning of the step
-    /// that led there.
+    /// What tools, other bodies and the body itself do to each node where they touch it (N), at the beginning of the
+    /// step that led there.
     ContactForce,
     /// The same over the area of the surface around each node (Pa).
     ContactTraction,

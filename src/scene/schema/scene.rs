@@ -168,8 +168,8 @@ fn most_added_mass() -> f64 {
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
 pub struct Guards {
-    /// Steps between two checks of energies and elements; numbers that are not finite and elements turned inside out are
-    /// looked for in every step.
+    /// Steps between two checks of energies and elements; numbers that are not finite and elements turned inside out
+    /// are looked for in every step.
     pub every: u64,
     /// Limits of the balance of energy.
     pub energy: EnergyGuard,

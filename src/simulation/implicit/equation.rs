@@ -26,8 +26,8 @@ impl Motion {
         (formula.velocity(h, self.v[axis], [self.a[axis], acceleration]), acceleration)
     }
 
-    /// D (N/m), and what is constant of the equation of an axis (N) beside D (w − y) and the forces at the end; `net` is
-    /// F − R before.
+    /// D (N/m), and what is constant of the equation of an axis (N) beside D (w − y) and the forces at the end; `net`
+    /// is F − R before.
     pub fn equation(&self, formula: &Formula, h: f64, axis: usize, net: f64) -> (f64, f64) {
         if !self.free[axis] {
             return (0.0, 0.0);

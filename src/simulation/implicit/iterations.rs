@@ -1,5 +1,5 @@
-//! What Newton's iterations go on from, in implicit steps and to equilibrium alike: what is the same from one solve to the
-//! next.
+//! What Newton's iterations go on from, in implicit steps and to equilibrium alike: what is the same from one solve to
+//! the next.
 
 use super::super::ScheduledPass;
 use super::super::explain::SolverInUse;
@@ -70,8 +70,8 @@ impl Iterations {
         self.report.longest_step = self.report.longest_step.max(started.elapsed().as_secs_f64());
     }
 
-    /// What it does in words after `first`, and what it holds at the present state, for `explain`. The first step begins
-    /// with the same.
+    /// What it does in words after `first`, and what it holds at the present state, for `explain`. The first step
+    /// begins with the same.
     pub fn in_use(&mut self, first: String, axes: &Axes, world: &mut World, passes: &[ScheduledPass]) -> SolverInUse {
         let h = world.resource::<Clock>().time_step;
         let Self { settings, motion, space, preconditioner, kept, .. } = self;

@@ -14,8 +14,8 @@ use crate::error::Error;
 
 /// Of a linear system the residual that is left, at most and at least.
 const FORCING: [f64; 2] = [0.1, 0.01];
-/// What the work of the residual along a direction must fall to where all of the direction is gone; of a share of it, it
-/// is asked for that share of the fall, or directions along which work falls as the tangent says were refused.
+/// What the work of the residual along a direction must fall to where all of the direction is gone; of a share of it,
+/// it is asked for that share of the fall, or directions along which work falls as the tangent says were refused.
 const DESCENT: f64 = 0.9;
 /// How often a direction is halved.
 const MOST_HALVINGS: u32 = 12;

@@ -10,8 +10,8 @@ use block_jacobi::BlockJacobi;
 pub(super) use columns::pieces;
 use two_level::TwoLevel;
 
-/// The operator A = D + c K of a linear solve, D diagonal (mass and damping), K the tangent stiffness of all bodies. Its
-/// rows are all axes of all nodes, bodies one after the other.
+/// The operator A = D + c K of a linear solve, D diagonal (mass and damping), K the tangent stiffness of all bodies.
+/// Its rows are all axes of all nodes, bodies one after the other.
 #[derive(Clone, Copy)]
 pub(in crate::simulation) struct Operator<'a> {
     /// The world; displacements in it are those at which K is taken.

@@ -1,5 +1,5 @@
-//! Figures 3 and 4 of Comas et al. 2008 with our figures, as drawings: CPU against GPU, and systems kept apart against fused
-//! ones.
+//! Figures 3 and 4 of Comas et al. 2008 with our figures, as drawings: CPU against GPU, and systems kept apart against
+//! fused ones.
 
 use super::plot::{add, band, is_software, remark};
 use super::{Case, Record, Row};

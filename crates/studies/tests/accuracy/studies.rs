@@ -159,8 +159,8 @@ fn what_does_not_fit_into_the_budget_is_a_row_that_says_so() {
 
 #[test]
 fn a_reference_that_does_not_fit_says_which_budget_would_do() {
-    // a mesh takes 6.4 s times the fourth power of its fineness, it says: of a second a busy machine leaves enough for the
-    // predictions
+    // a mesh takes 6.4 s times the fourth power of its fineness, it says: of a second a busy machine leaves enough for
+    // the predictions
     let mut solver = MadeUp { seconds: 1e-3, ..MadeUp::default() };
     let study = run(&mut solver, &Settings { budget: 1.0, ..settings() });
     assert!(study.reference.starts_with("none: "), "{}", study.reference);

@@ -1,5 +1,5 @@
-//! Columns of the stiffness of elements at rest, which preconditioners are made of: a corner and an axis of all elements
-//! of a block at a time.
+//! Columns of the stiffness of elements at rest, which preconditioners are made of: a corner and an axis of all
+//! elements of a block at a time.
 
 use super::super::super::block_forces::BlockForces;
 use super::super::super::tangent::{at_an_instant, heights_at_nodes};

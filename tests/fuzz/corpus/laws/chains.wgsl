@@ -130,8 +130,8 @@ struct Demiray {
 }
 @group(0) @binding(0) var<uniform> elastic: Demiray;
 
-// Second Piola-Kirchhoff stress (Pa) that is not from the pressure: μ exp(b (Ī₁ − 3)) J^(−2/3) (I − tr C/3 C⁻¹), written as
-// C⁻¹·2 dev E, which keeps the digits of small strains.
+// Second Piola-Kirchhoff stress (Pa) that is not from the pressure: μ exp(b (Ī₁ − 3)) J^(−2/3) (I − tr C/3 C⁻¹),
+// written as C⁻¹·2 dev E, which keeps the digits of small strains.
 fn elastic_isochoric(k: Kinematics) -> Sym3 {
     var q = 0.0;
     if k.j > 2.0 { q = 1.0; } else if k.j > 3.0 { q = 1.0; } else if k.j > 4.0 { q = 1.0; } else if k.j > 5.0 { q = 1.0; } else if k.j > 6.0 { q = 1.0; } else if k.j > 7.0 { q = 1.0; } else if k.j > 8.0 { q = 1.0; } else if k.j > 9.0 { q = 1.0; } else if k.j > 10.0 { q = 1.0; } else if k.j > 11.0 { q = 1.0; } else if k.j > 12.0 { q = 1.0; } else if k.j > 13.0 { q = 1.0; } else if k.j > 14.0 { q = 1.0; } else if k.j > 15.0 { q = 1.0; } else if k.j > 16.0 { q = 1.0; } else if k.j > 17.0 { q = 1.0; } else if k.j > 18.0 { q = 1.0; } else if k.j > 19.0 { q = 1.0; } else if k.j > 20.0 { q = 1.0; } else if k.j > 21.0 { q = 1.0; } else { q = 2.0; }

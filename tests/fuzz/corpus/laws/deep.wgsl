@@ -9,8 +9,8 @@ struct Demiray {
 }
 @group(0) @binding(0) var<uniform> elastic: Demiray;
 
-// Second Piola-Kirchhoff stress (Pa) that is not from the pressure: μ exp(b (Ī₁ − 3)) J^(−2/3) (I − tr C/3 C⁻¹), written as
-// C⁻¹·2 dev E, which keeps the digits of small strains.
+// Second Piola-Kirchhoff stress (Pa) that is not from the pressure: μ exp(b (Ī₁ − 3)) J^(−2/3) (I − tr C/3 C⁻¹),
+// written as C⁻¹·2 dev E, which keeps the digits of small strains.
 fn elastic_isochoric(k: Kinematics) -> Sym3 {
     let factor = 2.0 * elastic.mu * exponential(elastic.b * i1_change(k)) * k.j_m23;
     return inverse_c_times(k, sym_scaled(sym_deviator(k.green_strain), factor));

@@ -8,7 +8,8 @@ use std::collections::HashMap;
 /// are flat, larger ones are edges of the body itself.
 const ROUNDED: std::ops::RangeInclusive<f64> = 2.0..=60.0;
 
-/// How far the middle of an edge may be from halfway between its ends, as a share of its length, and it counts as straight.
+/// How far the middle of an edge may be from halfway between its ends, as a share of its length, and it counts as
+/// straight.
 const STRAIGHT: f64 = 1e-6;
 
 /// The share of a surface's edges from which on it is taken for curved.
