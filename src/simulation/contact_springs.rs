@@ -18,8 +18,8 @@ struct OnBody<'a> {
 }
 
 /// Refuses springs that the step is too large for. With k = f/(κ D) the frequency of all is bounded by ω² ≤ ω_e² + Σ
-/// f/Δt² (Weyl), so that at the share s of the stable step f ≤ 4 (1 − s²); damping that follows a step late leaves (√(1
-/// + ζ²) − ζ)² of that.
+/// f/Δt² (Weyl), so that at the share s of the stable step f ≤ 4 (1 − s²); damping that follows a step late leaves
+/// (√(1 + ζ²) − ζ)² of that.
 pub(super) fn check(scene: &Scene, stability: &Stability, diagnostics: &mut Diagnostics) {
     let share = match (scene.integration.step, stability.limit) {
         (Some(step), Some(limit)) => step / limit,

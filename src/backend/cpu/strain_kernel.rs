@@ -230,8 +230,8 @@ pub(crate) fn with_identity<R: Real>(gradient: &Mat3<R>) -> [[R; 3]; 3] {
 }
 
 /// tr C/3, tr C⁻¹/3 and a bound of the largest eigenvalue of C⁻¹ (see [`Strain::squeeze`]): |F|², and cof F over J,
-/// which lose no digits where C is nearly singular. Where a law does not end at J = 0, of cof C in place of C⁻¹, and 1
-/// + (1 − J)² at least.
+/// which lose no digits where C is nearly singular. Where a law does not end at J = 0, of cof C in place of C⁻¹, and
+/// 1 + (1 − J)² at least.
 #[inline(always)]
 pub(crate) fn sizes<R: Real>(f: &[[R; 3]; 3], ends: bool) -> [R; 3] {
     let third = f[0][0].constant(1.0 / 3.0);
