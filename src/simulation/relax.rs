@@ -326,7 +326,8 @@ impl Relaxing {
         // what goes back to rest is displaced by nothing in the end
         self.largest_displaced = self.largest_displaced.max(motion.displaced);
         found.remaining_motion = share(still, motion.displaced.max(1e-3 * self.largest_displaced));
-        found.rounding = share(residual.rounding_square.sqrt(), scale);
+        // where nothing is loaded and nothing is strained there is nothing to be a share of
+        found.rounding = if scale > 0.0 { share(residual.rounding_square.sqrt(), scale) } else { 0.0 };
         found.worst = residual.worst_in_words(world);
     }
 
