@@ -2,7 +2,7 @@
 
 use super::advice::{plain, seconds};
 use serde::Serialize;
-use sinew::scene::schema::{Analysis, ImplicitScheme, Scene, SearchMethod, Solver, WhenUnstable};
+use sinew::scene::schema::{Analysis, ImplicitScheme, Load, Scene, SearchMethod, Solver};
 use std::fmt;
 
 /// How the motion is found from step to step, or equilibrium.
@@ -10,7 +10,7 @@ use std::fmt;
 pub enum Method {
     /// Central differences.
     Explicit,
-    /// Central differences, the step longer by the root of this; elements that need a smaller one are made heavier.
+    /// Central differences of masses so many times as large, the step longer by the root of it.
     HeavierMasses(u32),
     /// Steps that solve for their end.
     Implicit {
@@ -31,7 +31,7 @@ const FRAMES: [f64; 4] = [0.02, 0.01, 0.005, 0.002];
 const PARTS: [f64; 4] = [1.0, 2.0, 4.0, 10.0];
 /// An implicit step is worth so many explicit ones at least: it takes more passes over all forces than that.
 const LEAST: f64 = 4.0;
-/// What the heaviest elements weigh in units of their mass.
+/// What bodies weigh in units of their mass.
 const HEAVIER: [u32; 2] = [4, 16];
 
 impl Method {
@@ -95,16 +95,28 @@ impl Method {
                 scene.integration.step = step;
             }
             Method::Explicit => (scene.solver, scene.integration.step) = (Solver::Explicit, step),
-            Method::HeavierMasses(_) => {
+            Method::HeavierMasses(times) => {
                 (scene.solver, scene.integration.step) = (Solver::Explicit, step);
-                scene.integration.beyond_stable_step = false;
-                scene.integration.when_unstable = Some(WhenUnstable::ScaleMass { most: 1.0 });
+                make_heavier(scene, f64::from(times));
             }
             Method::Implicit { scheme, step: own, linearized } => {
                 scene.integration.step = None;
                 scene.integration.when_unstable = None;
                 scene.solver = implicit(&scene.solver, scheme, step.unwrap_or(own), linearized);
             }
+        }
+    }
+}
+
+/// Multiplies all masses; weights and damping forces stay what they were.
+fn make_heavier(scene: &mut Scene, times: f64) {
+    for material in scene.materials.values_mut() {
+        material.density *= times;
+        material.damping = material.damping.map(|rate| rate / times);
+    }
+    for load in &mut scene.loads {
+        if let Load::Gravity { acceleration, .. } = load {
+            *acceleration /= times;
         }
     }
 }
