@@ -68,7 +68,7 @@ fn torn(trial: &mut Trial<'_>, sets: &[String], what: &str, strength: f64) -> Re
     trial.near(format!("force that {what} bears (N)"), most, strength, 0.02);
     simulation.advance_to(1.0)?;
     let reading = simulation.attachment("seam")?;
-    trial.holds(&format!("{what} holds nothing any more"), reading.holds == 0 && reading.force.length() == 0.0);
+    trial.holds(format!("{what} holds nothing any more"), reading.holds == 0 && reading.force.length() == 0.0);
     let energies = simulation.energies()?;
     let [spent, damped] = [energies.constraint_work, energies.damping_loss].map(|energy| energy.unwrap_or(f64::NAN));
     let left = energy(&mut simulation)?;
