@@ -120,13 +120,14 @@ impl Gluing<'_> {
         let (mut ties, mut closest) = (Vec::new(), f64::INFINITY);
         for (i, &row) in corners.rows.iter().enumerate() {
             let around = &corners.corners[corners.starts[i] as usize..corners.starts[i + 1] as usize];
-            let area: f64 = around.iter().map(|&c| corners.areas[c as usize / 4][c as usize % 4]).sum();
             let node = node_of[row as usize];
             let at = body.placed.mesh.points[node];
             let Some(found) = nearest(face, at, &|place| marked[place]) else { continue };
             closest = closest.min(found.distance);
+            let place_of = |row: u32| body.placed.mesh.points[node_of[row as usize]];
+            let [whole, area] = areas(&corners, around, place_of, normal_at(face, &found));
             // corners of faces with middles have none of their area
-            if found.distance > reach || area <= 0.0 {
+            if found.distance > reach || whole <= 0.0 {
                 continue;
             }
             let strength = match (normal, shear) {
@@ -146,6 +147,34 @@ impl Gluing<'_> {
         }
         ties.into_iter().for_each(|tie| self.push(of, tie));
     }
+}
+
+/// The cosine between the normals of faces from which on they are turned towards each other: 120°.
+const TURNED: f64 = -0.5;
+
+/// The normal of a body's face at a place of it.
+fn normal_at(body: &BodyParts, at: &OnSurface) -> DVec3 {
+    let [a, b, c] = at.corners.map(|node| body.placed.mesh.points[node as usize]);
+    (b - a).cross(c - a).normalize_or_zero()
+}
+
+/// A node's share of the area (m²) of the faces `around` it, and of those among them that are turned towards what they
+/// are glued to, whose normal is `outward`: at the edge of a surface the faces around the corner bear nothing of glue.
+/// Where no face is so turned both are the same.
+fn areas(corners: &FaceCorners, around: &[u32], place_of: impl Fn(u32) -> DVec3, outward: DVec3) -> [f64; 2] {
+    let (mut whole, mut turned) = (0.0, 0.0);
+    for &corner in around {
+        let (number, corner) = (corner as usize / 4, corner as usize % 4);
+        let [a, b, c, d] = corners.faces[number].map(&place_of);
+        // the product of the diagonals; the last corner of a triangle is its third
+        let normal = (c - a).cross(d - b);
+        let area = corners.areas[number][corner];
+        whole += area;
+        if normal.normalize_or_zero().dot(outward) < TURNED {
+            turned += area;
+        }
+    }
+    [whole, if turned > 0.0 { turned } else { whole }]
 }
 
 fn picked_faces(

@@ -5,8 +5,7 @@
 //! | body | node columns ([`nodes`]), [`Corners`], [`ElementForce`], [`Authoring`] |
 //! | element block: one element type, one material, one body | [`Block`], [`Connectivity`], [`Patches`], [`RestShape`] and, where called for, [`FibreDirection`], [`ViscousMemory`], [`NodalVolumeChange`], [`Alive`], [`RemovalStep`] |
 //! | material | [`Density`], an [elastic law](crate::materials::ElasticLaw), [`Fibres`](crate::materials::Fibres), [`ExponentialFibres`], [`Prony`], [`Damping`], [`StiffnessDamping`]: an effect exists when its component does |
-//! | constraint, load, removal | [`Fixed`], [`Prescribed`], [`SceneLoad`], [`OwnLoad`], [`RemovalCriterion`] with the
-//! rows they act on |
+//! | constraint, load, removal | [`Fixed`], [`Prescribed`], [`SceneLoad`], [`OwnLoad`], [`RemovalCriterion`] with the rows they act on |
 //! | probe | [`Probe`] |
 
 mod block;

@@ -259,6 +259,24 @@ fn budgets_bound_passes_and_tell_what_is_left() {
     assert!(summary.guards.warnings.iter().any(|notice| notice.criterion == "implicit_step"), "{:?}", summary.guards);
 }
 
+/// Steps of bodies that have come to rest begin within the tolerance, and leave nothing that needs a word.
+#[test]
+fn steps_at_rest_leave_no_residual_to_speak_of() {
+    let mut simulation = start(
+        "(duration: 0.6, solver: Implicit(step: 0.02),
+        bodies: {\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2), elements: Tet4), material: \"m\")},
+        materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 60)},
+        constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))],
+        loads: [Pressure(on: Plane(normal: (0, 0, 1), at: 0.1), pressure: 100, curve: Smooth(end: 0.1))])",
+    );
+    simulation.finish().unwrap();
+    let counts = *simulation.implicit_steps().unwrap();
+    assert!(counts.newton_iterations < counts.steps, "none is needed at rest: {counts:?}");
+    assert_eq!((counts.unsolved, counts.largest_residual_left), (0, 0.0), "{counts:?}");
+    let summary = simulation.summary("finished").unwrap();
+    assert!(summary.guards.warnings.is_empty(), "{:?}", summary.guards);
+}
+
 #[test]
 fn prescribed_motion_goes_where_it_should_and_gives_its_work() {
     let mut simulation = start(

@@ -1,6 +1,7 @@
 //! `sinew check`: whether a scene is sound.
 
 use super::Outcome;
+use super::advice::{self, Advice};
 use super::arguments::CheckArguments;
 use super::failure::{Failure, count_of};
 use super::progress;
@@ -24,17 +25,18 @@ pub fn command(arguments: &CheckArguments) -> Outcome {
     terminal::aside(&diagnostics.render(Paint::of_stderr().is_on()));
     let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
     let mut simulation = progress::during("building the simulation", || Simulation::new(&scene, &options))?;
+    let advice = progress::during("looking for cheaper steps", || advice::implicit(&scene, &mut simulation))?;
     if arguments.json {
-        let text =
-            serde_json::to_string_pretty(&facts(&mut simulation)?).map_err(|error| Failure::Silent(error.into()))?;
+        let text = serde_json::to_string_pretty(&facts(&mut simulation, advice.as_ref())?)
+            .map_err(|error| Failure::Silent(error.into()))?;
         return terminal::hand_out(&format!("{text}\n"));
     }
     let warnings = if diagnostics.is_empty() { String::new() } else { format!(", with {}", count_of(&diagnostics)) };
-    terminal::say(&format!("sound{warnings}: {}", verdict(&mut simulation)?))
+    terminal::say(&format!("sound{warnings}: {}", verdict(&mut simulation, advice.as_ref())?))
 }
 
 /// What a sound scene amounts to, for programs.
-fn facts(simulation: &mut Simulation) -> Result<serde_json::Value, Error> {
+fn facts(simulation: &mut Simulation, advice: Option<&Advice>) -> Result<serde_json::Value, Error> {
     let summary = simulation.summary("not run")?;
     Ok(serde_json::json!({
         "nodes": summary.nodes,
@@ -44,11 +46,12 @@ fn facts(simulation: &mut Simulation) -> Result<serde_json::Value, Error> {
         "share_of_limit": summary.share_of_limit,
         "stability": summary.stability,
         "added_mass": summary.step_history.map(|history| history.added_mass),
+        "implicit_steps": advice,
     }))
 }
 
 /// What a sound scene amounts to, for people.
-fn verdict(simulation: &mut Simulation) -> Result<String, Error> {
+fn verdict(simulation: &mut Simulation, advice: Option<&Advice>) -> Result<String, Error> {
     let summary = simulation.summary("not run")?;
     let world = simulation.world_mut();
     let blocks = world.query::<&Block>().iter(world).count() as u64;
@@ -73,6 +76,7 @@ fn verdict(simulation: &mut Simulation) -> Result<String, Error> {
             sought.load_steps,
         ),
     };
+    lines += &advice.map(Advice::text).unwrap_or_default();
     // a static analysis observes while loads grow, and at the end
     let observed = summary.equilibrium.as_ref().map_or(summary.planned_steps, |sought| sought.load_steps);
     lines += &format!("a run writes: {}\n", outputs(simulation, observed).join(", "));

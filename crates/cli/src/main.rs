@@ -1,6 +1,7 @@
 //! The command `sinew`: its arguments, what each part of it does, and how it ends.
 
 mod accuracy;
+mod advice;
 mod arguments;
 mod bench;
 mod check;

@@ -62,7 +62,7 @@ struct Way {
 /// How far Newton's iterations came.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
-    /// What is left of the first residual, as a share of it.
+    /// What is left of the first residual, as a share of it; 0 within the tolerance.
     pub left: f64,
     /// Whether that is within the tolerance, or what rounding makes.
     pub solved: bool,
@@ -218,7 +218,8 @@ impl Newton<'_, '_> {
 
     /// Notes how a step ends, and gives what is left of its residual.
     fn left_of(&mut self, [first, size]: [f64; 2], solved: bool, remaining: f64) -> Found {
-        let left = if first > 0.0 { size / first } else { 0.0 };
+        // a step that begins within the tolerance leaves all of next to nothing
+        let left = if first > 0.0 && !solved { size / first } else { 0.0 };
         self.report.unsolved += u64::from(!solved && self.settings.newton > 1);
         self.report.largest_residual_left = self.report.largest_residual_left.max(left);
         Found { left, solved, remaining: if size > 0.0 { remaining } else { 0.0 } }

@@ -21,7 +21,7 @@ pub struct ImplicitSteps {
     pub most_passes: u64,
     /// Steps that ended above the tolerance.
     pub unsolved: u64,
-    /// The largest residual that a step left, as a share of the one that it began with.
+    /// The largest residual that a step above the tolerance left, as a share of the one that it began with.
     pub largest_residual_left: f64,
     /// Bytes of what conjugate gradients are preconditioned with, coarse matrices with it.
     pub preconditioner_bytes: u64,

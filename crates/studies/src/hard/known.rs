@@ -79,12 +79,6 @@ pub const SHORTFALLS: &[Shortfall] = &[
         verdict: CaseVerdict::FailedHonestly,
         why: "a corner on an edge, in f32 on a GPU: elements come to hold 5.3 % more than was spent on them, where 5 are allowed; on the CPU it rests",
     },
-    Shortfall {
-        case: "h62",
-        on: |c, _| !c.is_tets(),
-        verdict: CaseVerdict::Failed,
-        why: "glue between hexahedra is found to bear 7 % (Hex8) and 12 % (Hex8MeanDilatation) more than its strength times its area, where 2 are allowed; why is not known; the thread tears as it should",
-    },
 ];
 
 /// What is known of a case in a configuration, in full or in the size for everyday.
