@@ -3,6 +3,7 @@
 
 mod sinew;
 
+mod advises;
 mod benches;
 mod ends;
 mod explains;

@@ -1,0 +1,45 @@
+//! `sinew check` says whether implicit steps would pay.
+
+use super::sinew::Workspace;
+
+/// Of a slow load implicit steps are advised, with the passes that they take and about the error that they have; of one
+/// that is there at once, and of what a program moves, they are not.
+#[test]
+fn check_advises_implicit_steps_where_they_pay() {
+    let place = Workspace::new();
+    std::fs::write(
+        place.path("slow.ron"),
+        "(duration: 0.4,
+        bodies: {\"b\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (4, 4, 4)), material: \"m\")},
+        materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e4, poisson: 0.45))},
+        constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))],
+        loads: [Pressure(on: Plane(normal: (0, 0, 1), at: 0.02), pressure: 300, curve: Smooth(end: 0.4))],
+        probes: {\"top\": (what: Displacement, on: Plane(normal: (0, 0, 1), at: 0.02), every: 0.04)})",
+    )
+    .unwrap();
+    let advice = |set: &[&str]| -> serde_json::Value {
+        let facts = place.done(&[&["check", "slow.ron", "--json"], set].concat());
+        serde_json::from_str::<serde_json::Value>(&facts).unwrap()["implicit_steps"].clone()
+    };
+    let advised = advice(&[]);
+    let number = |name: &str| advised[name].as_f64().unwrap_or_else(|| panic!("no {name}: {advised}"));
+    let step = format!("solver=Implicit(step: {})", number("step"));
+    assert!(place.done(&["check", "slow.ron"]).contains(&format!("try --set '{step}'")), "{advised}");
+
+    let way = |set: &[&str], out: &str| -> Vec<f64> {
+        place.done(&[&["run", "slow.ron", "--backend", "cpu", "--precision", "f64", "--out", out], set].concat());
+        place.table(&format!("{out}/probe_top.csv")).iter().map(|row| *row.last().unwrap()).collect()
+    };
+    let (explicit, implicit) = (way(&[], "explicit"), way(&["--set", &step], "implicit"));
+    assert_eq!(explicit.len(), implicit.len());
+    let largest = explicit.iter().fold(0.0_f64, |most, z| most.max(z.abs()));
+    let square: f64 = explicit.iter().zip(&implicit).map(|(a, b)| (a - b).powi(2)).sum();
+    let error = (square / explicit.len() as f64).sqrt() / largest;
+    assert!(largest > 1e-6 && error < 3.0 * number("error").max(1e-3), "{error}: {advised}");
+    let passes = place.json("implicit/summary.json")["implicit"]["passes"].as_f64().unwrap();
+    assert!((passes / number("passes") - 1.0).abs() < 0.5, "{passes}: {advised}");
+
+    assert!(advice(&["--set", "loads[0].curve=Step()"]).is_null());
+    assert!(advice(&["--set", "loads[0].curve=Input(name: \"hand\")"]).is_null());
+    assert!(advice(&["--set", &step]).is_null(), "they are taken");
+}
