@@ -248,10 +248,12 @@ fn every_system_is_a_file_of_its_name_and_a_line_of_the_step() {
     }
 }
 
-/// Each crate below sinew with its version and features.
-fn features(edges: &str) -> Vec<String> {
+/// Each crate below sinew with its version and features, as a build of some packages has them.
+fn features(edges: &str, packages: &[&str]) -> Vec<String> {
     let tree = ["tree", "--offline", "--prefix", "none", "--no-dedupe", "--format", "{p} {f}", "--edges", edges];
-    let output = std::process::Command::new(env!("CARGO")).args(tree).current_dir(root()).output().unwrap();
+    let packages = packages.iter().flat_map(|package| ["--package", package]);
+    let mut cargo = std::process::Command::new(env!("CARGO"));
+    let output = cargo.args(tree).args(packages).current_dir(root()).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8(output.stdout).unwrap();
     let mut lines: Vec<String> =
@@ -264,8 +266,23 @@ fn features(edges: &str) -> Vec<String> {
 /// Cargo compiles a crate once for each set of features: those of tests and examples must be those of a build for use.
 #[test]
 fn tests_and_examples_use_the_crates_of_a_build() {
-    let (build, tests) = (features("normal,build"), features("normal,build,dev"));
+    let (build, tests) = (features("normal,build", &[]), features("normal,build,dev", &[]));
     assert!(build.len() > 100 && tests.len() > build.len(), "{build:?}");
     let others: Vec<&String> = build.iter().filter(|line| !tests.contains(line)).collect();
     assert!(others.is_empty(), "with other features for tests (pin those in Cargo.toml): {others:?}");
+}
+
+/// What embeds sinew, and the crates below it that nothing else has.
+const EMBEDDING: &[(&str, &[&str])] = &[("sinew-c", &["sinew-c "])];
+
+/// What embeds sinew is built with the command (`crates/c/tests/run`), and so of crates that are compiled already.
+#[test]
+fn what_embeds_sinew_uses_the_crates_of_a_build() {
+    let tests = features("normal,build,dev", &[]);
+    for (package, of_its_own) in EMBEDDING {
+        let built = features("normal,build,dev", &[package, "sinew-cli"]);
+        let is_its_own = |line: &&String| of_its_own.iter().any(|name| line.starts_with(name));
+        let others: Vec<&String> = built.iter().filter(|line| !tests.contains(line) && !is_its_own(line)).collect();
+        assert!(built.len() > 100 && others.is_empty(), "{package} has crates with other features: {others:?}");
+    }
 }
