@@ -16,6 +16,7 @@ fn last_frame(run: &Configuration, scene: &str, number: usize) -> (Simulation, F
 /// A block rests on another, both between smooth walls: at every node the pressure is what is above it, ρ g H, whatever
 /// the node's share of the area; the shares are the footprint in sum.
 #[test]
+#[ignore = "long"]
 fn the_pressure_under_a_block_is_its_weight_over_its_area() {
     let (pressure, area) = (1000.0 * 9.81 * 0.02, 4e-4);
     for run in configurations() {
@@ -81,6 +82,7 @@ fn the_pressure_under_a_block_is_its_weight_over_its_area() {
 /// A block whose top is moved by 2 cm along another slides by as much below, less what it leans: μ p/G of its height,
 /// half a per cent of the way. What holds it is μ times what presses it, by the law exactly where all of it slides.
 #[test]
+#[ignore = "long"]
 fn a_block_that_is_drawn_slides_as_far_as_it_is_drawn() {
     for run in configurations() {
         for points in ["Nodes", "Faces"] {

@@ -65,6 +65,7 @@ fn a_ball_and_a_cube_that_collide_keep_their_momentum_and_make_no_energy() {
 }
 
 #[test]
+#[ignore = "long"]
 fn a_ball_that_is_let_go_comes_to_rest_on_tissue_and_weighs_on_what_holds_it() {
     for run in configurations() {
         let mut simulation = run.start(
@@ -98,6 +99,7 @@ fn a_ball_that_is_let_go_comes_to_rest_on_tissue_and_weighs_on_what_holds_it() {
 /// share of each correction is 1e-9 of it. With friction on a flat one: on round ones `tool_contact` keeps what it
 /// pushed in earlier turns along the normals of these.
 #[test]
+#[ignore = "long"]
 fn a_tool_too_heavy_to_be_held_up_is_a_guided_one() {
     let rod = ("Capsule(length: 0.05, radius: 0.006)", 0.0152, "");
     let press = ("Box(size: (0.2, 0.2, 0.01))", 0.0202, ", friction: 0.2, static_friction: 0.3");
@@ -136,6 +138,7 @@ fn a_tool_too_heavy_to_be_held_up_is_a_guided_one() {
 
 /// Alone in the world: u = v t + ½ g t², e^(−ct), and a box that tumbles about its middle axis.
 #[test]
+#[ignore = "long"]
 fn a_free_tool_that_touches_nothing_falls_tumbles_and_is_damped_as_closed_forms_say() {
     let scene = |free: &str, load: &str| {
         format!(
@@ -242,6 +245,7 @@ fn probes_tell_where_tools_are_and_how_fast() {
 }
 
 #[test]
+#[ignore = "long"]
 fn a_tool_that_became_too_fast_to_be_seen_ends_the_run_with_its_reason() {
     for run in configurations() {
         let mut simulation = run.start(
