@@ -286,3 +286,26 @@ fn what_embeds_sinew_uses_the_crates_of_a_build() {
         assert!(built.len() > 100 && others.is_empty(), "{package} has crates with other features: {others:?}");
     }
 }
+
+/// The crate as it is published holds what it is compiled from, and is under a mebibyte.
+#[test]
+fn the_package_is_small_and_whole() {
+    let place = tempfile::tempdir().unwrap();
+    let package = |more: &[&str]| {
+        let arguments = ["package", "--package", "sinew", "--offline", "--allow-dirty", "--quiet"];
+        let mut cargo = std::process::Command::new(env!("CARGO"));
+        let output = cargo.args(arguments).args(more).current_dir(root()).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    package(&["--no-verify", "--target-dir", place.path().to_str().unwrap()]);
+    let packed = place.path().join(format!("package/sinew-{}.crate", env!("CARGO_PKG_VERSION")));
+    let bytes = std::fs::metadata(&packed).unwrap().len();
+    assert!(bytes > 500_000 && bytes < 1 << 20, "{bytes} B");
+    let list = package(&["--list"]);
+    for ending in ["rs", "wgsl"] {
+        for file in files(&["src", "systems", "shaders"], ending).keys() {
+            assert!(list.lines().any(|line| line == file), "{file} is not in the package");
+        }
+    }
+}
