@@ -263,7 +263,7 @@ fn budgets_bound_passes_and_tell_what_is_left() {
 #[test]
 fn steps_at_rest_leave_no_residual_to_speak_of() {
     let mut simulation = start(
-        "(duration: 0.6, solver: Implicit(step: 0.02),
+        "(duration: 2, solver: Implicit(step: 0.02),
         bodies: {\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2), elements: Tet4), material: \"m\")},
         materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 60)},
         constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))],
