@@ -16,6 +16,7 @@
 //! ```
 
 pub mod components;
+pub mod driver;
 mod error;
 pub mod materials;
 pub mod math;

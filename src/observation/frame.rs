@@ -160,6 +160,27 @@ fn put_together(
     Ok(None)
 }
 
+/// A field of a body at the present step in the author's order: its numbers, one after the other, and how many there are
+/// of each node or element. Of several families of fibres that of the first.
+///
+/// # Errors
+/// What the GPU says.
+pub fn field_of(field: OutputField, body: Entity, world: &mut World) -> Result<(Vec<f32>, usize), Error> {
+    let components = field.components();
+    if field.is_of_nodes() {
+        let numbers = node_numbers(field, body, world)?;
+        return Ok((numbers.into_iter().map(|number| number as f32).collect(), components));
+    }
+    let wanted = WrittenFields { fields: vec![field], removed_elements: true };
+    let elements = ElementFields::new(&wanted, world)?;
+    let count = world.get::<Authoring>(body).map_or(0, |authoring| authoring.cells.len());
+    let (found, mut rows) = (elements.of_body(0, body, world), ElementRows::default());
+    (0..count).for_each(|place| {
+        found.put(place, &mut rows);
+    });
+    Ok((elements.columns(&rows).into_iter().next().map(|column| column.values).unwrap_or_default(), components))
+}
+
 /// A field of a body's nodes in the author's order, its numbers one after the other.
 fn node_numbers(field: OutputField, body: Entity, world: &mut World) -> Result<Vec<f64>, Error> {
     if field.is_of_contact() {

@@ -23,13 +23,13 @@ pub use attachments::{AttachmentReading, read_attachment};
 pub use contacts::{ContactReading, read_contact};
 pub use energies::{energies, energy_header, mass, removed_momentum};
 pub use fields::{BodyFields, body_fields, internal_forces};
-pub use frame::{WrittenFields, write as write_fields, write_whole};
+pub use frame::{WrittenFields, field_of, write as write_fields, write_whole};
 pub use guards::{GuardSettings, begin as begin_to_guard, held_for_long};
 pub use probes::{header, observe_probe, volume_left};
 pub use rounding::{Rounding, shortest_edge};
 pub use sample::{GuardKernels, Sample, sample};
 pub use skins::{SkinState, skin_of};
-pub use tools::{Felt, FreeReading, ToolReading, feel, read_tool};
+pub use tools::{Felt, FreeReading, ToolReading, feel, read_tool, way_of};
 pub use track::Track;
 
 use self::track::Moment;

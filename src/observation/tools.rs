@@ -136,7 +136,7 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
 
 /// Where a tool's origin is (m) and how it is turned (axis times angle, degrees), or the velocity of its origin (m/s)
 /// and how fast it turns (rad/s) in the middle of the last step.
-pub(super) fn way_of(world: &mut World, tool: &str, of_velocity: bool) -> [DVec3; 2] {
+pub fn way_of(world: &mut World, tool: &str, of_velocity: bool) -> [DVec3; 2] {
     let clock = *world.resource::<Clock>();
     let degrees = |turn: DQuat| turn.to_scaled_axis() * (180.0 / std::f64::consts::PI);
     if of_velocity && let Some((velocity, spin)) = super::free_tools::velocity_of(world, tool) {

@@ -137,6 +137,11 @@ impl Simulation {
         Ok(authoring.node_rows.iter().map(|&row| mass.get(row as usize)).collect())
     }
 
+    /// Where steps are taken, in words: the processor or the GPU, the number type, threads.
+    pub fn backend(&self) -> &str {
+        &self.facts.backend
+    }
+
     /// Whether steps are taken on a GPU.
     pub fn is_on_gpu(&self) -> bool {
         self.facts.on_gpu

@@ -3,7 +3,7 @@
 mod before_a_run;
 mod suites;
 
-pub use before_a_run::{MeshArguments, ModesArguments, UnloadArguments};
+pub use before_a_run::{MeshArguments, ModesArguments, UnloadArguments, ViewArguments};
 pub use suites::{BenchArguments, ELEMENTS, HardArguments};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -55,6 +55,8 @@ pub enum Command {
     /// Draw a scene or the output of a run
     #[command(after_help = STATUSES)]
     Render(RenderArguments),
+    /// Look at a scene while it runs, and pull at it, in a window of sinew-view
+    View(ViewArguments),
     /// Show what a mesh is and where it lies: extents, sets, quality, likely units; of a mesh file or of a scene's
     /// bodies
     #[command(after_help = STATUSES)]
@@ -98,7 +100,7 @@ impl Command {
             Command::Hard(arguments) => arguments.backend != BackendName::Cpu,
             Command::Bench(arguments) => arguments.backends.contains(&"gpu".to_string()),
             Command::Check(_) | Command::Mesh(_) | Command::Modes(_) | Command::Unload(_) => false,
-            Command::Completions { .. } | Command::Man { .. } => false,
+            Command::Completions { .. } | Command::Man { .. } | Command::View(_) => false,
         }
     }
 }

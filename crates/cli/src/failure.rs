@@ -24,6 +24,8 @@ pub enum Failure {
     Plot(sinew_pictures::plot::PlotError),
     /// The result could not be said.
     Silent(std::io::Error),
+    /// The viewer ended with this status; what there is to say it has said.
+    Viewer(u8),
     /// Ctrl-C; what there is to say has been said.
     Interrupted,
 }
@@ -48,6 +50,7 @@ impl Failure {
             Failure::TargetMissed => 5,
             Failure::TargetUnclear => 6,
             Failure::Silent(_) => 3,
+            Failure::Viewer(status) => *status,
             Failure::Interrupted => 130,
         }
     }
@@ -63,7 +66,7 @@ impl Failure {
             Failure::Options(text) | Failure::Broke(text) => complain(text),
             Failure::Plot(error) => complain(&error.to_string()),
             Failure::Silent(error) => complain(&format!("cannot write to the standard output: {error}")),
-            Failure::Interrupted | Failure::TargetMissed | Failure::TargetUnclear => {}
+            Failure::Interrupted | Failure::TargetMissed | Failure::TargetUnclear | Failure::Viewer(_) => {}
         }
     }
 }

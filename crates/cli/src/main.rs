@@ -20,6 +20,7 @@ mod run;
 mod stability;
 mod terminal;
 mod unload;
+mod view;
 mod wording;
 
 use arguments::{Arguments, Command};
@@ -47,6 +48,7 @@ fn main() -> ExitCode {
         Command::Mesh(arguments) => mesh::command(&arguments),
         Command::Explain(arguments) => explain::command(&arguments),
         Command::Render(arguments) => render::command(&arguments),
+        Command::View(arguments) => view::command(&arguments),
         Command::Accuracy(arguments) => accuracy::command(&arguments),
         Command::Hard(arguments) => hard::command(&arguments),
         Command::Bench(arguments) => bench::command(&arguments),

@@ -78,3 +78,11 @@ fn share(text: &str) -> Result<f64, String> {
         _ => Err("a number above 0 and below 1 is wanted, such as 1e-4".into()),
     }
 }
+
+/// What `sinew view` is told.
+#[derive(Args)]
+pub struct ViewArguments {
+    /// The scene, and what else sinew-view takes (sinew-view --help)
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "SCENE")]
+    pub words: Vec<std::ffi::OsString>,
+}

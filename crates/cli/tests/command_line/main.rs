@@ -13,4 +13,5 @@ mod renders;
 mod runs;
 mod threads;
 mod unloads;
+mod views;
 mod words;

@@ -1,7 +1,7 @@
 //! Where the eye stands.
 
 use super::clip::Extent;
-use glam::{Mat3, Vec2, Vec3};
+use glam::{Mat3, Mat4, Vec2, Vec3, Vec4};
 use sinew::scene::schema::Picture;
 
 /// How an eye looks at a scene.
@@ -157,6 +157,31 @@ impl Fit {
 }
 
 impl Camera {
+    /// Looks at a point (m) in the middle of the part of the picture from `left_top` to `right_bottom` (pixels), from a
+    /// distance (m) in the direction of a view, whose `look_at` does not count; what is nearer than `near` (m) is not
+    /// drawn.
+    pub fn looking_at(
+        view: &View,
+        (point, distance, near): (Vec3, f32, f32),
+        (left_top, right_bottom): (Vec2, Vec2),
+    ) -> Camera {
+        let Camera { axes, focal, middle, .. } = Fit::new(view, left_top, right_bottom).camera;
+        let eye = point + axes.transpose() * Vec3::Z * distance;
+        Camera { eye, axes, focal: focal * view.zoom, middle, near }
+    }
+
+    /// What takes a point (m) to where graphics devices clip, in a picture of a size (pixels): x and y from -1 to 1
+    /// upwards, depth 1 at what is too near to be drawn and 0 infinitely far.
+    pub fn clip_from_world(&self, size: Vec2) -> Mat4 {
+        let (scale, shift) = (2.0 * self.focal / size, 2.0 * self.middle / size - 1.0);
+        let row = |axis: usize| self.axes.row(axis);
+        // right, up, and how far ahead; the eye in the origin
+        let ahead = -row(2);
+        let rows = [row(0) * scale.x + ahead * shift.x, row(1) * scale.y - ahead * shift.y, Vec3::ZERO, ahead];
+        let moved = rows.map(|row| row.extend(-row.dot(self.eye)));
+        Mat4::from_cols(moved[0], moved[1], Vec4::W * self.near, moved[3]).transpose()
+    }
+
     /// Where a point appears (pixels), and the inverse of its distance along the line of sight (1/m), negative behind
     /// the eye.
     pub fn project(&self, point: Vec3) -> Vec3 {
@@ -268,6 +293,23 @@ mod tests {
         let seen = near.project(at);
         let back = near.eye() + near.ray(seen.truncate()) / seen.z;
         assert!(back.distance(at) < 1e-5, "{back}");
+    }
+
+    #[test]
+    fn graphics_devices_see_points_where_pictures_have_them() {
+        let size = Vec2::new(300.0, 200.0);
+        let view = View { zoom: 1.3, ..View::upright(Vec3::new(1.0, -2.0, 0.8)) };
+        let at = Vec3::new(0.1, 0.2, -0.1);
+        let camera = Camera::looking_at(&view, (at, 5.0, 0.5), (Vec2::new(20.0, 10.0), Vec2::new(280.0, 150.0)));
+        assert!(camera.project(at).truncate().distance(Vec2::new(150.0, 80.0)) < 1e-3);
+        assert!((camera.project(at).z - 0.2).abs() < 1e-6 && (camera.ahead(at) - 4.5).abs() < 1e-5);
+        for point in corners(Vec3::splat(-1.0), Vec3::splat(1.0)) {
+            let clip = camera.clip_from_world(size) * point.extend(1.0);
+            let (seen, there) = (camera.project(point), clip.truncate() / clip.w);
+            let pixel = (Vec2::new(there.x, -there.y) + 1.0) / 2.0 * size;
+            assert!(pixel.distance(seen.truncate()) < 1e-2, "{point}: {pixel}, not {seen}");
+            assert!((there.z - 0.5 * seen.z).abs() < 1e-6 && there.z > 0.0 && there.z < 1.0, "{there}");
+        }
     }
 
     #[test]

@@ -53,6 +53,23 @@ const KNOWN: [(&str, &str, &str, &str, Option<f32>); 22] = [
     ("quality", "", "quality", "", None),
 ];
 
+/// What is known of an array by its name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Known {
+    /// What it is, in words.
+    pub quantity: &'static str,
+    /// Its SI unit; empty for a plain number.
+    pub unit: &'static str,
+    /// The value between two sides, where it has one.
+    pub centre: Option<f32>,
+}
+
+/// What is known of an array, by its name in files.
+pub fn known(array: &str) -> Option<Known> {
+    let (_, _, quantity, unit, centre) = *KNOWN.iter().find(|known| known.0 == array)?;
+    Some(Known { quantity, unit, centre })
+}
+
 const AXES: [&str; 3] = ["x", "y", "z"];
 const TENSOR: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
 

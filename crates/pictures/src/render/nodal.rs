@@ -28,7 +28,7 @@ struct Sum {
 const NONE: u32 = u32::MAX;
 
 impl Averages {
-    /// Averages the values of those cells that are there.
+    /// Averages the values of those cells of a frame that are there.
     pub fn new(
         frame: &FrameFile,
         rest: &[Vec3],
@@ -40,6 +40,17 @@ impl Averages {
             Some(entry) => frame.floats(entry)?.into_iter().map(|number| number as u32).collect(),
             None => vec![0; values.len()],
         };
+        Ok(Self::of(material, rest, cells, values, there))
+    }
+
+    /// Averages the values of those cells that are there; `material`: that of each cell, by number.
+    pub fn of(
+        material: Vec<u32>,
+        rest: &[Vec3],
+        cells: &Cells,
+        values: &[f32],
+        there: impl Fn(usize) -> bool,
+    ) -> Averages {
         let mut averages =
             Averages { material, first: vec![(NONE, Sum::default()); rest.len()], others: HashMap::new() };
         for (cell, value) in values.iter().enumerate().filter(|(cell, _)| there(*cell)) {
@@ -49,7 +60,7 @@ impl Averages {
                 averages.add(*node, averages.material[cell], Sum { value: weight * f64::from(*value), weight });
             }
         }
-        Ok(averages)
+        averages
     }
 
     fn add(&mut self, node: u32, material: u32, more: Sum) {

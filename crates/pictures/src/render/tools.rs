@@ -4,11 +4,11 @@ use super::camera::{Camera, Fit};
 use super::clip::Extent;
 use super::picture::{Colouring, Layer, Lines};
 use super::raster::Finish;
-use glam::{DQuat, DVec3, Vec3};
+use glam::{DMat3, DQuat, DVec3, Vec3};
 use sinew::SceneFile;
 use sinew::assembly::motion;
 use sinew::components::{Key, Pose, ToolMotion};
-use sinew::scene::schema::{Analysis, Curve, Quantity, Shape, ToolMesh};
+use sinew::scene::schema::{self, Analysis, Curve, Quantity, Shape, ToolMesh};
 use sinew::tools::{Solid, Triangles};
 use std::path::Path;
 
@@ -23,6 +23,7 @@ pub struct Tools {
 /// A tool and its way.
 #[derive(Clone, Debug)]
 struct Tool {
+    name: String,
     motion: ToolMotion,
     /// In its own frame (m); of a plane the corners of a square whose sides are 2 m long.
     points: Vec<DVec3>,
@@ -39,6 +40,9 @@ pub struct Placed<'a> {
     /// Outwards, of a plane.
     plane: Option<Vec3>,
 }
+
+/// Points (m) and triangles.
+type Surface = (Vec<DVec3>, Vec<[u32; 3]>);
 
 /// Segments around what is round.
 const SEGMENTS: usize = 96;
@@ -64,26 +68,30 @@ impl Tools {
     /// The tools of a scene that was run into a folder, and for each that cannot be drawn why: its file is gone, or has
     /// another content now. Curves that a program sets while it runs are taken as they begin.
     pub fn of_scene(scene: &SceneFile, folder: &Path) -> (Tools, Vec<String>) {
+        Self::of(scene, folder, false)
+    }
+
+    /// The tools of a scene that runs, for [`Tools::at`], and for each that cannot be drawn why.
+    pub fn live(scene: &SceneFile) -> (Tools, Vec<String>) {
+        // nothing was copied
+        Self::of(scene, Path::new(""), true)
+    }
+
+    fn of(scene: &SceneFile, folder: &Path, live: bool) -> (Tools, Vec<String>) {
         let rest = match scene.scene.analysis {
             Analysis::Static(search) => Some(search.at.unwrap_or(scene.scene.duration)),
             Analysis::Transient => None,
         };
         let (mut tools, mut missing) = (Tools { tools: Vec::new(), rest }, Vec::new());
         for (name, tool) in &scene.scene.tools {
-            let surface = match (&tool.shape, &tool.mesh) {
-                (Some(shape), _) => match Solid::new(shape.clone(), tool.rounding) {
-                    Ok(solid) => Ok(solid.surface(SEGMENTS, 1.0)),
-                    Err(problem) => Err(problem.to_string()),
-                },
-                (None, Some(mesh)) => triangles(scene, &folder.join(copy_of(name, mesh)), mesh),
-                (None, None) => Err("it has neither a shape nor a mesh".into()),
-            };
-            let way = match tool.free {
+            let surface = surface(scene, folder, name, tool);
+            let way = match tool.free.as_ref().filter(|_| !live) {
                 Some(_) => seen_way(scene, name, folder).map(|path| ToolMotion { path, ..motion(tool) }),
                 None => Ok(motion(tool)),
             };
             match surface.and_then(|surface| Ok((surface, way?))) {
                 Ok(((points, triangles), motion)) => tools.tools.push(Tool {
+                    name: name.clone(),
                     motion,
                     points,
                     faces: triangles.into_iter().map(|[a, b, c]| [a, b, c, c]).collect(),
@@ -93,6 +101,14 @@ impl Tools {
             }
         }
         (tools, missing)
+    }
+
+    /// Where they are at poses that are known: place of the origin (m) and how each is turned, by name. `spanned`: what
+    /// planes are to reach beyond.
+    pub fn at(&self, pose: impl Fn(&str) -> Option<(DVec3, DQuat)>, spanned: &Extent) -> Vec<Placed<'_>> {
+        let known = self.tools.iter().filter_map(|tool| Some((tool, pose(&tool.name)?)));
+        let pose = |(at, turn): (DVec3, DQuat)| Pose { at, rotation: DMat3::from_quat(turn) };
+        known.map(|(tool, place)| tool.placed(&pose(place), spanned)).collect()
     }
 
     /// Whether there are none.
@@ -135,6 +151,18 @@ impl Tools {
     }
 }
 
+/// The surface of a tool, from its shape, or from the copy of its triangles in the output folder or the scene's file.
+fn surface(scene: &SceneFile, folder: &Path, name: &str, tool: &schema::Tool) -> Result<Surface, String> {
+    match (&tool.shape, &tool.mesh) {
+        (Some(shape), _) => match Solid::new(shape.clone(), tool.rounding) {
+            Ok(solid) => Ok(solid.surface(SEGMENTS, 1.0)),
+            Err(problem) => Err(problem.to_string()),
+        },
+        (None, Some(mesh)) => triangles(scene, &folder.join(copy_of(name, mesh)), mesh),
+        (None, None) => Err("it has neither a shape nor a mesh".into()),
+    }
+}
+
 /// Where a free tool was at which time, from the table of a probe of its pose in the output folder.
 fn seen_way(scene: &SceneFile, tool: &str, folder: &Path) -> Result<Vec<Key>, String> {
     let of_tool = |what: &Quantity| matches!(what, Quantity::ToolPose { tool: of } if of == tool);
@@ -155,7 +183,7 @@ fn seen_way(scene: &SceneFile, tool: &str, folder: &Path) -> Result<Vec<Key>, St
 }
 
 /// The triangles of a tool, from the copy in the output folder or from the scene's file.
-fn triangles(scene: &SceneFile, copy: &Path, mesh: &ToolMesh) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), String> {
+fn triangles(scene: &SceneFile, copy: &Path, mesh: &ToolMesh) -> Result<Surface, String> {
     let bytes = match std::fs::read(copy) {
         Ok(bytes) => bytes,
         Err(_) => {

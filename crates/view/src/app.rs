@@ -1,0 +1,325 @@
+//! The viewer: a driver, what is seen of it, and what the user asks for.
+
+use crate::camera::Orbit;
+use crate::files::{Files, free_name};
+use crate::marks::Marks;
+use crate::mouse::{Drag, Frame};
+use crate::panels::KEYS;
+use crate::scene3d::{Look, Scene, Scene3d};
+use crate::settings::Settings;
+use crate::shot::Shot;
+use crate::surfaces::Scenery;
+use crate::traces::Traces;
+use eframe::egui_wgpu::RenderState;
+use egui::{CentralPanel, Color32, Key, Rect, Sense, Ui, pos2};
+use glam::Vec3;
+use sinew::Options;
+use sinew::driver::{Command, Driver, State};
+use sinew::scene::schema::OutputField;
+use sinew_pictures::render::{Extent, View, write_png};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What the viewer begins with.
+#[derive(Clone, Debug, Default)]
+pub struct Start {
+    /// The scene's file; one can be dropped later.
+    pub scene: Option<PathBuf>,
+    /// Values put into it, as by `--set`.
+    pub sets: Vec<String>,
+    /// How it runs.
+    pub options: Options,
+    /// Whether it runs at once.
+    pub run: bool,
+    /// What is seen at first.
+    pub settings: Settings,
+    /// A picture of the window that is to be taken.
+    pub shot: Option<Shot>,
+}
+
+/// The viewer.
+pub struct App {
+    pub(crate) driver: Driver,
+    pub(crate) state: Arc<State>,
+    pub(crate) settings: Settings,
+    pub(crate) orbit: Orbit,
+    pub(crate) scenery: Scenery,
+    pub(crate) traces: Traces,
+    pub(crate) drag: Option<Drag>,
+    /// All is to be seen in the next picture.
+    pub(crate) to_fit: bool,
+    /// What is told, and whether it is bad.
+    pub(crate) news: Option<(String, bool)>,
+    pub(crate) last_field: Option<OutputField>,
+    /// Values at the ends of the colours in the last picture.
+    pub(crate) seen_range: (f32, f32),
+    pub(crate) shows_keys: bool,
+    pub(crate) shows_plots: bool,
+    pub(crate) wants_picture: bool,
+    files: Files,
+    picture: Option<Picture>,
+    /// The field that the driver was asked for.
+    asked: Option<OutputField>,
+    /// Whether the camera has gone to where it broke down.
+    been_there: bool,
+    shot: Option<Shot>,
+}
+
+/// The picture on the screen's device.
+struct Picture {
+    screen: RenderState,
+    scene3d: Scene3d,
+    texture: egui::TextureId,
+}
+
+impl App {
+    /// Starts; without a device (`screen`) all is there but the picture.
+    pub fn new(context: &egui::Context, start: Start, screen: Option<RenderState>) -> Self {
+        let wake = context.clone();
+        let driver = Driver::start(start.options, move || wake.request_repaint());
+        let picture = screen.map(|screen| {
+            let scene3d = Scene3d::new(screen.device.clone(), screen.queue.clone(), (1, 1));
+            let filter = eframe::wgpu::FilterMode::Linear;
+            let texture = screen.renderer.write().register_native_texture(&screen.device, scene3d.texture(), filter);
+            Picture { screen, scene3d, texture }
+        });
+        let mut app = Self {
+            state: driver.state(),
+            driver,
+            settings: start.settings,
+            orbit: Orbit::of(&View::upright(Vec3::new(1.0, -2.0, 0.8))),
+            scenery: Scenery::default(),
+            traces: Traces::default(),
+            drag: None,
+            to_fit: true,
+            news: None,
+            last_field: None,
+            seen_range: (0.0, 1.0),
+            shows_keys: false,
+            shows_plots: false,
+            wants_picture: false,
+            files: Files::new(start.scene, start.sets),
+            picture,
+            asked: None,
+            been_there: false,
+            shot: start.shot,
+        };
+        app.read_scene();
+        if start.run {
+            app.driver.send(Command::Run);
+        }
+        app
+    }
+
+    /// The newest state that was drawn.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// What is seen and how.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Shows all of it.
+    pub fn show(&mut self, ui: &mut Ui) {
+        self.read_scene();
+        self.state = self.driver.state();
+        if self.scenery.follow(&self.state) {
+            self.begin();
+        }
+        self.traces.note(&self.state);
+        ui.ctx().set_visuals(if self.settings.dark { egui::Visuals::dark() } else { egui::Visuals::light() });
+        let dropped = ui.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
+        if let Some(path) = dropped {
+            self.files.open(path);
+        }
+        self.keys(ui);
+        self.panels(ui);
+        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.picture(ui));
+        if self.settings.field != self.asked {
+            self.asked = self.settings.field;
+            self.driver.send(Command::Field(self.asked));
+        }
+        if self.state.breakdown.is_none() {
+            self.been_there = false;
+        } else if !self.been_there {
+            self.been_there = true;
+            self.go_to_breakdown();
+        }
+        if let Some(shot) = &mut self.shot {
+            shot.follow(ui);
+        }
+        // to see whether the file has changed
+        ui.ctx().request_repaint_after(std::time::Duration::from_millis(500));
+    }
+
+    fn read_scene(&mut self) {
+        match self.files.poll() {
+            Some(Ok(scene)) => {
+                self.news = None;
+                self.driver.send(Command::Load(Box::new(scene)));
+            }
+            Some(Err(mistakes)) => self.news = Some((mistakes, true)),
+            None => {}
+        }
+    }
+
+    /// Begins with a scene: the first one is seen as its picture would be.
+    fn begin(&mut self) {
+        let Some(loaded) = &self.state.loaded else { return };
+        if loaded.number == 0 {
+            self.orbit = Orbit::of(&View::from(&loaded.scene.scene.picture));
+            self.to_fit = true;
+        }
+    }
+
+    pub(crate) fn run_or_pause(&mut self) {
+        self.driver.send(if self.state.running { Command::Pause } else { Command::Run });
+    }
+
+    fn keys(&mut self, ui: &Ui) {
+        if !self.settings.keys || ui.ctx().text_edit_focused() {
+            return;
+        }
+        let (pressed, shift) = ui.input(|input| {
+            let pressed: Vec<Key> = KEYS.iter().map(|key| key.0).filter(|key| input.key_pressed(*key)).collect();
+            (if input.modifiers.ctrl { Vec::new() } else { pressed }, input.modifiers.shift)
+        });
+        let settings = &mut self.settings;
+        for key in pressed {
+            match key {
+                Key::Space => self.driver.send(if self.state.running { Command::Pause } else { Command::Run }),
+                Key::ArrowRight => self.driver.send(Command::Step(if shift { 100 } else { 1 })),
+                Key::R => self.driver.send(Command::Reset),
+                Key::F => self.to_fit = true,
+                Key::W => settings.wireframe = !settings.wireframe,
+                Key::G => settings.ghost = !settings.ghost,
+                Key::C => settings.cut = !settings.cut,
+                Key::S => settings.supports = !settings.supports,
+                Key::D => settings.dark = !settings.dark,
+                Key::P => self.wants_picture = true,
+                Key::T if settings.field.is_some() => settings.field = None,
+                Key::T => settings.field = self.last_field.or(Some(OutputField::VonMises)),
+                _ => self.shows_keys = !self.shows_keys,
+            }
+        }
+    }
+
+    /// The picture, and what the mouse does in it.
+    fn picture(&mut self, ui: &mut Ui) {
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Image, true, "Picture of the scene"));
+        let frame = Frame { rect, scale: ui.ctx().pixels_per_point() };
+        self.mouse(ui, &response, &frame);
+        let tissues = self.scenery.tissues.clone();
+        let drawn = self.scenery.draw(&self.state, &self.settings);
+        self.seen_range = drawn.scale.range;
+        if self.to_fit && !drawn.all.is_nothing() {
+            self.orbit.fit(&drawn.all, frame.size());
+            self.to_fit = false;
+        }
+        let camera = self.orbit.camera(frame.size());
+        let painter = ui.painter_at(rect);
+        if let Some(picture) = &mut self.picture {
+            let surfaces = drawn.surfaces(&camera);
+            let table = drawn.has_table(&surfaces);
+            let up = self.state.loaded.as_ref().map_or(Vec3::Z, |loaded| View::from(&loaded.scene.scene.picture).up);
+            let up = up.normalize_or(Vec3::Z);
+            let settings = &self.settings;
+            let look = Look {
+                wet: settings.wet,
+                shadows: settings.shadows,
+                ground: !table && camera.eye().dot(up) > lowest(&drawn.bodies, up),
+                dark: settings.dark,
+                scale: frame.scale,
+                tissues,
+            };
+            let ground = (up, lowest(&drawn.bodies, up));
+            let scene = Scene {
+                surfaces: &surfaces,
+                scale: drawn.scale,
+                plane: drawn.plane,
+                bodies: drawn.bodies,
+                ground,
+                look,
+            };
+            picture.draw(&scene, &camera, frame.size());
+            let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            painter.image(picture.texture, rect, whole, Color32::WHITE);
+        }
+        let colour = ui.visuals().strong_text_color();
+        Marks { painter: &painter, frame, camera: &camera, colour }.draw(&self.state, &self.settings, &drawn);
+        drop(drawn);
+        if std::mem::take(&mut self.wants_picture) {
+            self.write_picture();
+        }
+    }
+
+    /// Writes the picture beside where the viewer was started.
+    fn write_picture(&mut self) {
+        let stem = self.files.path().and_then(|path| path.file_stem()).map(|stem| stem.to_string_lossy().into_owned());
+        let path = free_name(Path::new(""), stem.as_deref().unwrap_or("sinew"), "png");
+        self.news = Some(match self.picture.as_ref().and_then(|picture| picture.scene3d.picture()) {
+            None => ("there is no picture without a graphics device; `sinew render` draws without one".into(), true),
+            Some(image) => match write_png(&path, &image) {
+                Ok(()) => (format!("wrote {}", path.display()), false),
+                Err(error) => (error.to_string(), true),
+            },
+        });
+    }
+
+    /// Looks at the element in which the simulation broke down.
+    pub(crate) fn go_to_breakdown(&mut self) {
+        let state = self.state.clone();
+        let place = state.breakdown.as_ref().and_then(|broken| {
+            let loaded = state.loaded.as_ref()?;
+            let number = loaded.bodies.iter().position(|body| body.name == broken.body)?;
+            let (body, now) = (&loaded.bodies[number], state.bodies.get(number)?);
+            let wanted = broken.criterion.element?;
+            let element = (0..body.cells.len()).find(|place| body.elements.of(*place) == wanted)?;
+            let nodes = body.cells.nodes(element);
+            let mean = |places: &[[f32; 3]]| {
+                let sum =
+                    nodes.iter().filter_map(|node| places.get(*node as usize)).map(|place| Vec3::from_array(*place));
+                sum.sum::<Vec3>() / nodes.len() as f32
+            };
+            let mut extent = Extent::NOTHING;
+            body.rest.iter().for_each(|place| extent.add(Vec3::from_array(*place)));
+            // where it is no longer anywhere, it was
+            let there = Some(mean(&now.positions)).filter(|place| extent.grown(0.5).has(*place));
+            Some((there.unwrap_or_else(|| mean(&body.rest)), extent.diagonal()))
+        });
+        if let Some((place, size)) = place {
+            self.orbit.go_to(place, 1.5 * size);
+        }
+    }
+}
+
+/// Where the lowest corner of an extent is along a direction (m).
+fn lowest(extent: &Extent, up: Vec3) -> f32 {
+    if extent.is_nothing() {
+        return 0.0;
+    }
+    let corner = Vec3::select(up.cmpgt(Vec3::ZERO), extent.low, extent.high);
+    corner.dot(up)
+}
+
+impl Picture {
+    /// Draws a scene into a picture of a size (pixels).
+    fn draw(&mut self, scene: &Scene<'_>, camera: &sinew_pictures::render::Camera, size: glam::Vec2) {
+        if self.scene3d.resize((size.x as u32, size.y as u32)) {
+            let mut renderer = self.screen.renderer.write();
+            let filter = eframe::wgpu::FilterMode::Linear;
+            let (device, texture) = (&self.screen.device, self.scene3d.texture());
+            renderer.update_egui_texture_from_wgpu_texture(device, texture, filter, self.texture);
+        }
+        self.scene3d.draw(scene, camera);
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
+        self.show(ui);
+    }
+}

@@ -1,0 +1,90 @@
+//! The scene's file: read, and read again when it has changed.
+
+use sinew::SceneFile;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant, SystemTime};
+
+/// How often the file is looked at.
+const EVERY: Duration = Duration::from_millis(400);
+
+/// A scene's file, which may change.
+#[derive(Debug)]
+pub struct Files {
+    path: Option<PathBuf>,
+    sets: Vec<String>,
+    changed: Option<SystemTime>,
+    looked: Instant,
+}
+
+impl Files {
+    /// A file, if there is one yet, and the values that are put into it.
+    pub fn new(path: Option<PathBuf>, sets: Vec<String>) -> Self {
+        Self { path, sets, changed: None, looked: Instant::now() }
+    }
+
+    /// The file.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
+    /// Goes over to another file, without values put in.
+    pub fn open(&mut self, path: PathBuf) {
+        (self.path, self.sets, self.changed) = (Some(path), Vec::new(), None);
+    }
+
+    /// The scene, if the file has changed since it was read last, or what is wrong with it.
+    pub fn poll(&mut self) -> Option<Result<SceneFile, String>> {
+        if self.changed.is_some() && self.looked.elapsed() < EVERY {
+            return None;
+        }
+        self.looked = Instant::now();
+        let path = self.path.as_ref()?;
+        let changed = std::fs::metadata(path).and_then(|about| about.modified());
+        // one that is not there just now is being written
+        let changed = changed.unwrap_or(self.changed.unwrap_or(SystemTime::UNIX_EPOCH));
+        if self.changed == Some(changed) {
+            return None;
+        }
+        self.changed = Some(changed);
+        Some(SceneFile::load(path, &self.sets).map_err(|mistakes| mistakes.render(false)))
+    }
+}
+
+/// The first name `STEM_0001.ENDING`, `STEM_0002.ENDING` ... in a folder that no file has.
+pub fn free_name(folder: &Path, stem: &str, ending: &str) -> PathBuf {
+    let name = |number: u32| folder.join(format!("{stem}_{number:04}.{ending}"));
+    (1..10_000).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(0))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_file_is_read_when_it_has_changed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.ron");
+        let mut files = Files::new(Some(path.clone()), Vec::new());
+        assert!(files.poll().unwrap().unwrap_err().contains("cannot read the scene"));
+        let cube = include_str!("../../../scenes/cube_under_gravity.ron");
+        std::fs::write(&path, cube).unwrap();
+        std::thread::sleep(EVERY);
+        assert_eq!(files.poll().unwrap().unwrap().scene.duration, 1.0);
+        assert!(files.poll().is_none());
+        std::fs::write(&path, cube.replace("duration: 1,", "durations: 1,")).unwrap();
+        let later = SystemTime::now() + Duration::from_secs(5);
+        std::fs::File::open(&path).unwrap().set_modified(later).unwrap();
+        std::thread::sleep(EVERY);
+        assert!(files.poll().unwrap().unwrap_err().contains("durations"));
+    }
+
+    #[test]
+    fn no_picture_is_written_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = free_name(folder.path(), "cube", "png");
+        assert!(first.ends_with("cube_0001.png"));
+        std::fs::write(first, "").unwrap();
+        assert!(free_name(folder.path(), "cube", "png").ends_with("cube_0002.png"));
+    }
+}

@@ -1,0 +1,126 @@
+//! From the layers of a picture to triangles for a graphics device.
+
+use glam::Vec3;
+use sinew_pictures::render::{Camera, Colouring, Finish, Layer, Lines, of_corners};
+
+/// A corner of a triangle, as `scene.wgsl` takes it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct Corner {
+    position: [f32; 3],
+    normal: [f32; 3],
+    rest: [f32; 3],
+    value: f32,
+    /// Bits: 0 which corner, 2 edges opposite to corners, 5 ink, 13 finish, 17 tissue, 25 whether the plane cuts it.
+    flags: u32,
+}
+
+/// A layer, and what a picture does not have of it.
+pub struct Surface<'a> {
+    /// The layer.
+    pub layer: Layer<'a>,
+    /// Where its vertices were at rest (m); empty where nothing is drawn there.
+    pub rest: &'a [Vec3],
+    /// Which kind of tissue it is made of, where no value colours it.
+    pub tissue: Option<u8>,
+}
+
+/// Triangles in the order in which they are drawn.
+#[derive(Debug, Default)]
+pub struct Triangles {
+    /// Three a triangle.
+    pub corners: Vec<Corner>,
+    /// How many corners, from the first on, cast shadows.
+    pub casting: usize,
+    /// How many corners are solid: those that are seen through come after them.
+    pub solid: usize,
+}
+
+/// How dark lines are: between elements, in a section, of the shape at rest.
+const INK: [f32; 3] = [0.62, 0.4, 0.75];
+
+/// The number of a finish in `scene.wgsl`.
+fn number(finish: Finish, tissue: bool) -> u32 {
+    match finish {
+        Finish::Plain if tissue => 7,
+        Finish::Plain => 0,
+        Finish::Bared => 1,
+        Finish::Sheet(_) => 2,
+        Finish::Ghost => 3,
+        Finish::Steel => 4,
+        Finish::Table => 5,
+        Finish::Pane => 6,
+    }
+}
+
+/// All surfaces in triangles.
+pub fn of(surfaces: &[Surface<'_>], camera: &Camera) -> Triangles {
+    let mut all = Triangles::default();
+    let casts = |finish: Finish| matches!(finish, Finish::Plain | Finish::Bared | Finish::Steel);
+    let put = |wanted: &dyn Fn(Finish) -> bool, corners: &mut Vec<Corner>| {
+        let some = surfaces.iter().filter(|surface| wanted(surface.layer.finish));
+        some.for_each(|surface| add(surface, camera, corners));
+        corners.len()
+    };
+    all.casting = put(&casts, &mut all.corners);
+    all.solid = put(&|finish| !casts(finish) && !finish.is_clear(), &mut all.corners);
+    put(&Finish::is_clear, &mut all.corners);
+    all
+}
+
+/// A quadrilateral is four triangles about its middle, so that none of its diagonals is favoured.
+fn add(surface: &Surface<'_>, camera: &Camera, corners: &mut Vec<Corner>) {
+    let layer = &surface.layer;
+    let normals = match layer.flat {
+        None => of_corners(layer.vertices, layer.faces),
+        Some(normal) => vec![[normal; 4]; layer.faces.len()],
+    };
+    let common = number(layer.finish, surface.tissue.is_some()) << 13
+        | u32::from(surface.tissue.unwrap_or(0)) << 17
+        | u32::from(layer.cut) << 25;
+    for (row, face) in layer.faces.iter().enumerate() {
+        let places = face.map(|point| layer.vertices[point as usize]);
+        if !places.iter().all(|place| place.is_finite()) {
+            continue;
+        }
+        let rest = face.map(|point| surface.rest.get(point as usize).copied().unwrap_or_default());
+        let values = match layer.values {
+            Colouring::Vertices(values) => face.map(|point| values[point as usize]),
+            Colouring::Faces(values) => [values[row]; 4],
+            Colouring::Corners(values) => values[row],
+            Colouring::Nothing => [0.0; 4],
+        };
+        let (ink, bits) = match layer.lines {
+            Lines::None => (0.0, 0),
+            Lines::All => (INK[0] * fade(&places, camera), 0b1111),
+            Lines::Sides(sides) if layer.finish == Finish::Ghost => (INK[2], sides[row]),
+            Lines::Sides(sides) => (INK[1] * fade(&places, camera), sides[row]),
+        };
+        let edge = |side: usize| u32::from(bits >> side & 1);
+        let of = |at: usize| (places[at], normals[row][at], rest[at], values[at]);
+        let mut put = |three: [(Vec3, Vec3, Vec3, f32); 3], edges: u32| {
+            for (which, (position, normal, rest, value)) in (0..).zip(three) {
+                let flags = which | edges << 2 | ((255.0 * ink) as u32) << 5 | common;
+                let [position, normal, rest] = [position, normal, rest].map(|vector| vector.to_array());
+                corners.push(Corner { position, normal, rest, value, flags });
+            }
+        };
+        if face[2] == face[3] {
+            put([of(0), of(1), of(2)], edge(1) | edge(2) << 1 | edge(0) << 2);
+            continue;
+        }
+        let mean = |all: [Vec3; 4]| all.iter().sum::<Vec3>() / 4.0;
+        let middle = (mean(places), mean(normals[row]), mean(rest), values.iter().sum::<f32>() / 4.0);
+        for side in 0..4 {
+            put([middle, of(side), of((side + 1) % 4)], edge(side));
+        }
+    }
+}
+
+/// Lines fade when elements become so small that lines would cover them.
+fn fade(places: &[Vec3; 4], camera: &Camera) -> f32 {
+    let [a, b, c, d] = *places;
+    let longest = [a.distance(b), b.distance(c), c.distance(d), d.distance(a)].into_iter().fold(0.0, f32::max);
+    let pixels = longest * camera.focal() / camera.eye().distance(a).max(f32::MIN_POSITIVE);
+    ((pixels - 2.5) / 9.0).clamp(0.0, 1.0)
+}

@@ -1,0 +1,134 @@
+//! From a state of the driver to the surfaces that are drawn of it.
+
+mod body;
+
+use crate::scene3d::{Surface, Tissue};
+use crate::settings::{Settings, about};
+use body::{BodyMesh, Part};
+use glam::{DVec3, Vec3};
+use sinew::driver::{Loaded, State};
+use sinew::scene::schema::Cut;
+use sinew_pictures::render::{Camera, Extent, Finish, Layer, Lines, Placed, Plane, Scale, SeenValues, Tools};
+use std::sync::Arc;
+
+/// What is kept from frame to frame of a scene.
+#[derive(Default)]
+pub struct Scenery {
+    loaded: Option<Arc<Loaded>>,
+    bodies: Vec<BodyMesh>,
+    tools: Tools,
+    /// How bodies look.
+    pub tissues: Vec<Tissue>,
+    /// Tools that cannot be drawn, and why.
+    pub missing: Vec<String>,
+}
+
+/// What is drawn of a state.
+pub struct Drawn<'a> {
+    parts: Vec<Part>,
+    tools: Vec<Placed<'a>>,
+    /// What bodies fill.
+    pub bodies: Extent,
+    /// What bodies and tools near them fill.
+    pub all: Extent,
+    /// The colours of values.
+    pub scale: Scale,
+    /// What cuts bodies open.
+    pub plane: Option<Plane>,
+}
+
+impl Scenery {
+    /// Goes over to the scene of a state: whether it is another one.
+    pub fn follow(&mut self, state: &State) -> bool {
+        let number = |loaded: &Option<Arc<Loaded>>| loaded.as_ref().map(|loaded| loaded.number);
+        if number(&state.loaded) == number(&self.loaded) {
+            return false;
+        }
+        self.loaded = state.loaded.clone();
+        let Some(loaded) = &self.loaded else { return false };
+        self.bodies = loaded.bodies.iter().map(BodyMesh::new).collect();
+        (self.tools, self.missing) = Tools::live(&loaded.scene);
+        let tissue = |name: &String| {
+            let of = loaded.scene.scene.bodies.get(name).map(|body| format!("{name} {:?}", body.material));
+            Tissue::of_name(of.as_deref().unwrap_or(name))
+        };
+        self.tissues = loaded.bodies.iter().map(|body| tissue(&body.name)).collect();
+        true
+    }
+
+    /// What is drawn of a state.
+    pub fn draw(&mut self, state: &State, settings: &Settings) -> Drawn<'_> {
+        let field = state.field.filter(|field| settings.field == Some(*field));
+        let mut seen = SeenValues::default();
+        let mut extent = Extent::NOTHING;
+        for (mesh, now) in self.bodies.iter_mut().zip(&state.bodies) {
+            mesh.move_to(now, settings.deformation);
+            mesh.vertices.iter().for_each(|point| extent.add(*point));
+        }
+        let plane = settings.cut.then(|| plane(settings, &extent));
+        let mut parts = Vec::new();
+        for (number, (mesh, now)) in self.bodies.iter_mut().zip(&state.bodies).enumerate() {
+            let first = parts.len();
+            mesh.parts(now, number, (settings, field), plane.as_ref(), &mut parts);
+            let values = parts[first..].iter().flat_map(|part: &Part| &part.values);
+            values.for_each(|value| seen.value(*value));
+        }
+        let known = field.map(|field| about(field, settings.component));
+        let sizes = field.is_some_and(|field| crate::settings::components(field).first() == Some(&"length"));
+        let mut scale = seen.scale(known.and_then(|known| known.centre), sizes && settings.component == 0);
+        if let Some(range) = settings.range.filter(|range| range.0 < range.1) {
+            scale.range = range;
+        }
+        let pose = |name: &str| {
+            let tool = state.tools.iter().find(|tool| tool.name == name)?;
+            Some((tool.place, tool.rotation))
+        };
+        let tools = if settings.tools { self.tools.at(pose, &extent) } else { Vec::new() };
+        let mut all = extent;
+        // planes reach far, instruments beyond what is looked at
+        let near = state.tools.iter().map(|tool| tool.place.as_vec3()).filter(|place| extent.grown(0.25).has(*place));
+        near.for_each(|place| all.add(place));
+        Drawn { parts, tools, bodies: extent, all, scale, plane }
+    }
+}
+
+/// The plane that cuts, between where it takes all of an extent away and nothing.
+fn plane(settings: &Settings, extent: &Extent) -> Plane {
+    let normal = settings.cut_normal.normalize_or(Vec3::NEG_Y);
+    let corner =
+        |high: bool| Vec3::select(normal.cmpgt(Vec3::ZERO) ^ glam::BVec3::splat(!high), extent.high, extent.low);
+    let (low, high) = (normal.dot(corner(false)), normal.dot(corner(true)));
+    let at = low + (high - low) * settings.cut_at.clamp(0.0, 1.0);
+    let point: DVec3 = (normal * at).into();
+    Plane::new(&Cut { point, normal: normal.into() }, extent.diagonal())
+}
+
+impl Drawn<'_> {
+    /// The surfaces, as an eye sees them.
+    pub fn surfaces(&self, camera: &Camera) -> Vec<Surface<'_>> {
+        let mut surfaces: Vec<Surface<'_>> = self.parts.iter().map(Part::surface).collect();
+        let vertices = || self.parts.iter().filter(|part| part.finish != Finish::Ghost).flat_map(|part| &part.vertices);
+        let depth = |normal: Vec3| vertices().map(|point| -normal.dot(*point)).fold(f32::MIN, f32::max);
+        let tool = |tool: &'_ Placed<'_>| tool.layer(camera, &self.bodies, depth);
+        for placed in &self.tools {
+            let layer = tool(placed);
+            surfaces.push(Surface { layer, rest: &[], tissue: None });
+        }
+        surfaces
+    }
+
+    /// Whether a plane of the scene is what bodies stand on.
+    pub fn has_table(&self, surfaces: &[Surface<'_>]) -> bool {
+        !self.tools.is_empty() && surfaces.iter().any(|surface| surface.layer.finish == Finish::Table)
+    }
+
+    /// The layers, for a picture drawn without a graphics device.
+    pub fn layers(&self, camera: &Camera) -> Vec<Layer<'_>> {
+        self.surfaces(camera).into_iter().map(|surface| surface.layer).collect()
+    }
+}
+
+/// Which sides of faces are drawn as lines.
+fn lines(wanted: bool) -> Lines<'static> {
+    if wanted { Lines::All } else { Lines::None }
+}

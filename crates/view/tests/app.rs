@@ -1,0 +1,170 @@
+//! The whole viewer but its picture, by the words on it: no window, no graphics device.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use egui::{Event, Key, Modifiers, PointerButton, Pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use sinew::driver::State;
+use sinew::{BackendChoice, Options};
+use sinew_view::{App, Start};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+struct Place {
+    folder: tempfile::TempDir,
+    scene: PathBuf,
+}
+
+const CUBE: &str = include_str!("../../../scenes/cube_under_gravity.ron");
+
+impl Place {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = folder.path().join("cube.ron");
+        let place = Self { folder, scene };
+        place.write("(10, 10, 10)", "(3, 3, 3)");
+        place
+    }
+
+    fn write(&self, from: &str, to: &str) {
+        assert!(self.folder.path().exists());
+        std::fs::write(&self.scene, CUBE.replace("(10, 10, 10)", "(3, 3, 3)").replace(from, to)).unwrap();
+    }
+
+    fn open(&self) -> Harness<'static, Option<App>> {
+        let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
+        let start = Start { scene: Some(self.scene.clone()), options, ..Start::default() };
+        let app = move |ui: &mut egui::Ui, app: &mut Option<App>| {
+            app.get_or_insert_with(|| App::new(ui.ctx(), start.clone(), None)).show(ui);
+        };
+        let mut harness = Harness::builder().with_size([1100.0, 700.0]).build_ui_state(app, None);
+        wait(&mut harness, "a scene", |state| state.loaded.is_some() && !state.bodies.is_empty());
+        // the camera goes to where all is seen
+        harness.step();
+        harness
+    }
+}
+
+fn state<'a>(harness: &'a Harness<'static, Option<App>>) -> &'a State {
+    harness.state().as_ref().unwrap().state()
+}
+
+fn wait(harness: &mut Harness<'static, Option<App>>, what: &str, done: impl Fn(&State) -> bool) {
+    let started = Instant::now();
+    loop {
+        harness.step();
+        if done(state(harness)) {
+            return;
+        }
+        assert!(started.elapsed() < Duration::from_secs(60), "waited for {what}: {:?}", state(harness).refusal);
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn press(harness: &mut Harness<'static, Option<App>>, label: &str) {
+    harness.get_by_label(label).click();
+    harness.step();
+}
+
+#[test]
+fn it_runs_pauses_steps_and_goes_back_by_its_buttons() {
+    let place = Place::new();
+    let mut harness = place.open();
+    press(&mut harness, "Run");
+    wait(&mut harness, "time to pass", |state| state.running && state.time > 0.02);
+    press(&mut harness, "Pause");
+    wait(&mut harness, "it to stand", |state| !state.running);
+    let step = state(&harness).step;
+    press(&mut harness, "Step");
+    wait(&mut harness, "one step", |state| state.step == step + 1);
+    press(&mut harness, "Reset");
+    wait(&mut harness, "the start", |state| state.step == 0);
+    press(&mut harness, "Plots");
+    harness.get_by_label("energies (J)");
+}
+
+#[test]
+fn keys_and_boxes_change_what_is_seen() {
+    let place = Place::new();
+    let mut harness = place.open();
+    let settings = |harness: &Harness<'static, Option<App>>| harness.state().as_ref().unwrap().settings().clone();
+    press(&mut harness, "Elements");
+    assert!(settings(&harness).wireframe);
+    harness.key_press(Key::W);
+    harness.step();
+    assert!(!settings(&harness).wireframe);
+    press(&mut harness, "Cut open");
+    assert!(settings(&harness).cut);
+    press(&mut harness, "Dark");
+    harness.step();
+    harness.get_by_label("Light");
+    press(&mut harness, "Keys");
+    harness.step();
+    harness.get_by_label("pull at the tissue");
+    harness.key_press(Key::T);
+    harness.step();
+    assert_eq!(settings(&harness).field.map(|field| field.array()), Some("von_mises"));
+    wait(&mut harness, "values", |state| state.bodies[0].values.len() == 27);
+}
+
+fn pointer(harness: &mut Harness<'static, Option<App>>, at: Pos2, pressed: Option<bool>, modifiers: Modifiers) {
+    harness.input_mut().modifiers = modifiers;
+    harness.event_modifiers(Event::PointerMoved(at), modifiers);
+    if let Some(pressed) = pressed {
+        harness.event_modifiers(
+            Event::PointerButton { pos: at, button: PointerButton::Primary, pressed, modifiers },
+            modifiers,
+        );
+    }
+    harness.step();
+}
+
+#[test]
+fn the_mouse_picks_and_with_ctrl_it_pulls() {
+    let place = Place::new();
+    let mut harness = place.open();
+    let middle = harness.get_by_label("Picture of the scene").rect().center();
+    pointer(&mut harness, middle, Some(true), Modifiers::NONE);
+    pointer(&mut harness, middle, Some(false), Modifiers::NONE);
+    wait(&mut harness, "a pick", |state| state.picked.is_some());
+    harness.step();
+    let picked = state(&harness).picked.clone().unwrap();
+    harness.get_by_label(&format!("cube, node {}", picked.node_number));
+    pointer(&mut harness, middle, Some(true), Modifiers::CTRL);
+    pointer(&mut harness, middle + egui::vec2(12.0, 0.0), None, Modifiers::CTRL);
+    wait(&mut harness, "a hold", |state| !state.held.is_empty());
+    for way in 1..=5u8 {
+        pointer(&mut harness, middle + egui::vec2(12.0 + 8.0 * f32::from(way), 0.0), None, Modifiers::CTRL);
+    }
+    wait(&mut harness, "a force", |state| state.held.first().is_some_and(|held| held.force.length() > 1e-3));
+    pointer(&mut harness, middle + egui::vec2(60.0, 0.0), Some(false), Modifiers::NONE);
+    wait(&mut harness, "letting go", |state| state.held.is_empty());
+}
+
+#[test]
+fn a_file_that_changes_is_read_again_and_a_wrong_one_tells_why_while_the_old_goes_on() {
+    let place = Place::new();
+    let mut harness = place.open();
+    press(&mut harness, "Run");
+    let later = |seconds: u64| {
+        let file = std::fs::File::options().append(true).open(&place.scene).unwrap();
+        file.set_modified(std::time::SystemTime::now() + Duration::from_secs(seconds)).unwrap();
+    };
+    place.write("material: \"tissue\"", "material: \"issue\"");
+    later(10);
+    wait(&mut harness, "a refusal", |state| state.refusal.as_ref().is_some_and(|told| told.reason.contains("issue")));
+    let time = state(&harness).time;
+    wait(&mut harness, "the old scene to go on", |state| state.running && state.time > time);
+    assert!(harness.query_by_label_contains("issue").is_some(), "its text is seen");
+    place.write("(3, 3, 3)", "(2, 2, 2)");
+    later(20);
+    wait(&mut harness, "the new scene", |state| state.refusal.is_none() && state.bodies[0].positions.len() == 27);
+    place.write("duration: 1,", "durations: 1,");
+    later(30);
+    let started = Instant::now();
+    while harness.query_by_label_contains("durations").is_none() {
+        assert!(started.elapsed() < Duration::from_secs(30), "a word that is none is told");
+        std::thread::sleep(Duration::from_millis(20));
+        harness.step();
+    }
+}

@@ -1,0 +1,63 @@
+//! What can be asked of a simulation while it runs.
+
+use crate::SceneFile;
+use crate::scene::schema::OutputField;
+use glam::DVec3;
+
+/// What can be asked of a [`Session`](super::Session).
+#[derive(Clone, Debug)]
+pub enum Command {
+    /// Go on. At the end of the scene it pauses; asked again it goes on beyond.
+    Run,
+    /// Stay.
+    Pause,
+    /// Stay, after so many steps.
+    Step(u64),
+    /// Simulated seconds a second on the wall, 1 at first; infinite: as fast as it can.
+    Speed(f64),
+    /// Back to the state before the first step.
+    Reset,
+    /// Back to the last state kept that is not later than a time (s).
+    Rewind(f64),
+    /// Change parameters by the words of `--set`: [`Simulation::change`](crate::Simulation::change).
+    Set(Vec<String>),
+    /// Set an input of the scene.
+    Input {
+        /// Its name.
+        name: String,
+        /// The factor that it goes to.
+        value: f64,
+    },
+    /// Take hold of what a ray first meets, with a hand of any number; what that held is let go.
+    Grab {
+        /// The hand.
+        hand: u32,
+        /// Where the ray begins (m).
+        origin: DVec3,
+        /// Where it goes.
+        direction: DVec3,
+    },
+    /// Move what a hand pulls towards to a place (m).
+    MoveGrab {
+        /// The hand.
+        hand: u32,
+        /// The place (m).
+        target: DVec3,
+    },
+    /// Let go with a hand.
+    Release {
+        /// The hand.
+        hand: u32,
+    },
+    /// Say what lies where a ray first meets a body; forget what was asked before where it meets none.
+    Pick {
+        /// Where the ray begins (m).
+        origin: DVec3,
+        /// Where it goes.
+        direction: DVec3,
+    },
+    /// Which field states have values of; none at first.
+    Field(Option<OutputField>),
+    /// Go over to another scene. If that is refused, the old one goes on.
+    Load(Box<SceneFile>),
+}

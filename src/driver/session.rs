@@ -1,0 +1,215 @@
+//! A simulation that is driven, without a thread: the host steps it once a frame.
+
+use super::command::Command;
+use super::grabs::Hands;
+use super::look::Look;
+use super::pace::Pace;
+use super::state::{Picked, Refusal, State};
+use crate::components::{Authoring, Block, Label};
+use crate::error::Error;
+use crate::{Ended, Options, SceneFile, Simulation};
+use glam::DVec3;
+use std::time::Duration;
+
+/// States to go back to are kept so often in the time of a scene, in so many bytes at most.
+const KEPT: (f64, usize) = (200.0, 256 << 20);
+
+/// A simulation that is driven by [`Command`]s, one step of a frame at a time.
+pub struct Session {
+    options: Options,
+    run: Option<Run>,
+    running: bool,
+    pace: Pace,
+    refusal: Option<Refusal>,
+    commands: u64,
+    look: Look,
+}
+
+/// A scene at work.
+struct Run {
+    simulation: Simulation,
+    hands: Hands,
+    picked: Option<Picked>,
+    /// Whether it goes on where the scene ends.
+    beyond: bool,
+}
+
+impl Session {
+    /// A session without a scene. What is loaded can be grabbed, whatever the options say.
+    pub fn new(options: Options) -> Self {
+        let options = Options { grabs: true, ..options };
+        let look = Look::default();
+        Self { options, run: None, running: false, pace: Pace::new(), refusal: None, commands: 0, look }
+    }
+
+    /// The simulation, for what no command does; none before a scene is loaded.
+    pub fn simulation(&mut self) -> Option<&mut Simulation> {
+        self.run.as_mut().map(|run| &mut run.simulation)
+    }
+
+    /// Whether [`advance`](Self::advance) takes steps.
+    pub fn is_running(&self) -> bool {
+        self.running && self.run.as_ref().is_some_and(|run| run.simulation.failure().is_none())
+    }
+
+    /// Does what a command asks. What is refused changes nothing, and is told by the next [`state`](Self::state).
+    pub fn command(&mut self, command: Command) {
+        self.commands += 1;
+        let name = name_of(&command);
+        match self.obey(command) {
+            Ok(()) => drop(self.refusal.take_if(|refusal| refusal.command == name)),
+            // a breakdown is a state of its own
+            Err(Error::Unstable(_)) => {}
+            Err(error) => self.refusal = Some(Refusal { command: name, reason: error.to_string() }),
+        }
+    }
+
+    /// Takes the steps that are due after some time on the wall, for as long as a budget of it lasts; at least one, if
+    /// any is.
+    pub fn advance(&mut self, wall: Duration, budget: Duration) {
+        if !self.is_running() {
+            return;
+        }
+        let Some(run) = &mut self.run else { return };
+        if run.simulation.is_finished() && !run.beyond {
+            self.running = false;
+            return;
+        }
+        let before = run.simulation.time();
+        let end = if run.beyond { f64::INFINITY } else { run.simulation.scene().duration };
+        let until = self.pace.until(before, wall).min(end);
+        match run.simulation.advance_for(budget, until) {
+            Ok(advanced) => {
+                let now = run.simulation.time();
+                self.pace.note(now, advanced.simulated, wall.max(advanced.took), advanced.why == Ended::Budget);
+                self.running = advanced.why != Ended::Rest;
+            }
+            Err(error) => {
+                self.running = false;
+                if !matches!(error, Error::Unstable(_)) {
+                    self.refusal = Some(Refusal { command: "run", reason: error.to_string() });
+                }
+            }
+        }
+    }
+
+    /// The simulation as it is now.
+    pub fn state(&mut self) -> State {
+        let running = self.is_running();
+        let mut state = State {
+            running,
+            speed: self.pace.speed,
+            real_time_factor: self.pace.factor().filter(|_| running),
+            commands: self.commands,
+            ..State::default()
+        };
+        if let Some(run) = &mut self.run {
+            state.picked = run.picked.clone();
+            if let Err(error) = self.look.at(&mut run.simulation, &run.hands, running, &mut state) {
+                self.running = false;
+                self.refusal = Some(Refusal { command: "run", reason: error.to_string() });
+            }
+        }
+        state.refusal = self.refusal.clone();
+        state
+    }
+
+    fn obey(&mut self, command: Command) -> Result<(), Error> {
+        match command {
+            Command::Load(scene) => return self.load(&scene),
+            Command::Speed(speed) if speed > 0.0 => {
+                self.pace.speed = speed;
+                return Ok(());
+            }
+            Command::Speed(speed) => {
+                return Err(Error::Options(format!("time cannot go {speed} times as fast: it must be above 0")));
+            }
+            Command::Field(field) => {
+                self.look.field = field;
+                return Ok(());
+            }
+            _ => {}
+        }
+        let Some(run) = &mut self.run else {
+            return Err(Error::Options("there is no scene yet: load one first".into()));
+        };
+        if matches!(command, Command::Run | Command::Step(_)) && run.simulation.failure().is_some() {
+            return Err(Error::Options("it broke down and cannot go on: go back, or load another scene".into()));
+        }
+        match command {
+            Command::Run => {
+                run.beyond |= run.simulation.is_finished() && !run.simulation.scene().is_static();
+                self.running = true;
+                self.pace.stand(run.simulation.time());
+            }
+            Command::Pause => self.running = false,
+            Command::Step(count) => {
+                self.running = false;
+                run.simulation.advance(count)?;
+            }
+            Command::Reset | Command::Rewind(_) => {
+                match command {
+                    Command::Rewind(to) => run.simulation.rewind(to).map(drop)?,
+                    _ => run.simulation.reset()?,
+                }
+                run.hands.all_open(&mut run.simulation)?;
+                (run.beyond, run.picked) = (false, None);
+                self.pace.stand(run.simulation.time());
+            }
+            Command::Set(sets) => run.simulation.change(&sets)?,
+            Command::Input { name, value } => run.simulation.set_input(&name, value)?,
+            Command::Grab { hand, origin, direction } => {
+                run.hands.grab(hand, (origin, direction), &mut run.simulation)?;
+            }
+            Command::MoveGrab { hand, target } => run.hands.move_to(hand, target, &mut run.simulation)?,
+            Command::Release { hand } => run.hands.release(hand, &mut run.simulation)?,
+            Command::Pick { origin, direction } => run.picked = picked(&mut run.simulation, origin, direction)?,
+            Command::Load(_) | Command::Speed(_) | Command::Field(_) => {}
+        }
+        Ok(())
+    }
+
+    fn load(&mut self, scene: &SceneFile) -> Result<(), Error> {
+        let mut simulation = Simulation::new(scene, &self.options)?;
+        if !scene.scene.is_static() {
+            // with less, time cannot be gone back but to the start
+            let _ = simulation.keep_history(scene.scene.duration / KEPT.0, KEPT.1);
+        }
+        self.look.begin(scene, &mut simulation)?;
+        self.pace.stand(simulation.time());
+        self.run = Some(Run { simulation, hands: Hands::default(), picked: None, beyond: false });
+        Ok(())
+    }
+}
+
+/// The word by which a refusal names a command.
+fn name_of(command: &Command) -> &'static str {
+    match command {
+        Command::Run | Command::Pause => "run",
+        Command::Step(_) => "step",
+        Command::Speed(_) => "speed",
+        Command::Reset | Command::Rewind(_) => "reset",
+        Command::Set(_) => "set",
+        Command::Input { .. } => "input",
+        Command::Grab { .. } | Command::MoveGrab { .. } | Command::Release { .. } => "grab",
+        Command::Pick { .. } => "pick",
+        Command::Field(_) => "field",
+        Command::Load(_) => "load",
+    }
+}
+
+/// What a ray meets, and whose that is.
+fn picked(simulation: &mut Simulation, origin: DVec3, direction: DVec3) -> Result<Option<Picked>, Error> {
+    let Some(pick) = simulation.pick(origin, direction)? else { return Ok(None) };
+    let heaviest = (0..3).max_by(|&a, &b| pick.weights[a].total_cmp(&pick.weights[b])).unwrap_or(0);
+    let node = pick.nodes[heaviest];
+    let body = simulation.body(&pick.body)?;
+    let world = simulation.world();
+    let Some(authoring) = world.get::<Authoring>(body) else { return Ok(None) };
+    let element = (0..authoring.cells.len()).find(|place| authoring.element_ids.of(*place) == pick.element);
+    let block = element.and_then(|place| authoring.blocks.get(authoring.element_rows.get(place)?.0 as usize));
+    let material = block.and_then(|block| world.get::<Label>(world.get::<Block>(*block)?.material));
+    let material = material.map(|label| label.0.clone()).unwrap_or_default();
+    let node_number = authoring.node_ids.of(node as usize);
+    Ok(Some(Picked { node, node_number, element: element.unwrap_or(0), material, pick }))
+}

@@ -1,0 +1,203 @@
+//! The driver: commands in, states out, whatever becomes of the simulation.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use sinew::driver::{Command, Driver, Session, State};
+use sinew::glam::DVec3;
+use sinew::scene::schema::OutputField;
+use sinew::{BackendChoice, Options, SceneFile};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+const FRAME: Duration = Duration::from_millis(16);
+/// More than any frame of these scenes takes, on a busy machine too.
+const AMPLE: Duration = Duration::from_secs(20);
+
+fn scene(further: &str) -> Box<SceneFile> {
+    let text = format!(
+        "(duration: 2, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3), elements: Hex8), material: \"m\")}},
+        materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
+        constraints: [Fixed(on: Set(\"z0\"))], {further})"
+    );
+    Box::new(SceneFile::from_text("test.ron", &text, Path::new(""), &[]).unwrap())
+}
+
+/// Gravity by an input, which is 1 at first, with what makes energies counted and a probe.
+const FALL: &str = "loads: [Gravity(acceleration: (0, 0, -9.81), curve: Input(name: \"weight\", initial: 1))],
+    integration: (step: 1e-3), output: (energies_every: 0.01),
+    probes: {\"top\": (what: Displacement, on: Set(\"z1\"), every: 0.01)}";
+
+fn options() -> Options {
+    Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() }
+}
+
+fn session(further: &str) -> Session {
+    let mut session = Session::new(options());
+    session.command(Command::Load(scene(further)));
+    session
+}
+
+fn bits(state: &State) -> Vec<u32> {
+    state.bodies.iter().flat_map(|body| body.positions.as_flattened()).map(|number| number.to_bits()).collect()
+}
+
+#[test]
+fn commands_go_in_and_states_come_out_of_a_thread() {
+    let driver = Driver::start(options(), || ());
+    assert!(driver.state().loaded.is_none());
+    let done = |driver: &Driver| -> Arc<State> {
+        let started = Instant::now();
+        while driver.is_behind() {
+            assert!(started.elapsed() < AMPLE && !driver.has_ended(), "the thread does not answer");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        driver.state()
+    };
+    driver.send(Command::Step(1));
+    assert!(done(&driver).refusal.as_ref().unwrap().reason.contains("no scene"));
+    driver.send(Command::Load(scene(FALL)));
+    driver.send(Command::Field(Some(OutputField::VonMises)));
+    driver.send(Command::Step(20));
+    let state = done(&driver);
+    let loaded = state.loaded.as_ref().unwrap();
+    assert_eq!((state.step, state.running, loaded.bodies[0].rest.len()), (20, false, 64));
+    assert_eq!((state.bodies[0].values.len(), state.bodies[0].components), (27, 1));
+    assert!(state.bodies[0].values.iter().any(|stress| *stress > 0.0));
+    assert!(state.probes[0][2] < 0.0 && state.energies.kinetic > 0.0);
+    assert_eq!(loaded.bodies[0].constrained.iter().filter(|axes| **axes == 7).count(), 16);
+    driver.send(Command::Run);
+    let started = Instant::now();
+    while driver.state().time < 0.05 {
+        assert!(started.elapsed() < AMPLE);
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    driver.send(Command::Pause);
+    assert!(!done(&driver).running);
+}
+
+#[test]
+fn a_pause_keeps_the_bits_and_back_at_the_start_they_are_those_of_the_first_run() {
+    let mut session = session(FALL);
+    session.command(Command::Step(30));
+    let (before, first) = (bits(&session.state()), session.state().bodies[0].topology);
+    session.command(Command::Run);
+    session.command(Command::Pause);
+    for _ in 0..3 {
+        session.advance(FRAME, AMPLE);
+    }
+    assert_eq!((bits(&session.state()), session.state().bodies[0].topology), (before.clone(), first));
+    session.command(Command::Input { name: "weight".into(), value: -3.0 });
+    session.command(Command::Step(30));
+    assert_ne!(bits(&session.state()), before);
+    session.command(Command::Reset);
+    assert_eq!((session.state().step, session.state().inputs[0].value), (0, 1.0));
+    session.command(Command::Step(30));
+    assert_eq!(bits(&session.state()), before);
+    // states are kept each hundredth of a second
+    session.command(Command::Step(30));
+    let state = session.state();
+    assert!(state.history.len() > 4, "{:?}", state.history);
+    session.command(Command::Rewind(0.0301));
+    assert!((session.state().time - 0.03).abs() < 1e-9, "{}", session.state().time);
+    assert_eq!(bits(&session.state()), before);
+}
+
+#[test]
+fn time_goes_as_fast_as_on_the_wall_or_as_asked() {
+    let mut session = session(FALL);
+    session.command(Command::Run);
+    for speed in [1.0, 0.25] {
+        session.command(Command::Speed(speed));
+        let before = session.state().time;
+        (0..30).for_each(|_| session.advance(FRAME, AMPLE));
+        let gone = session.state().time - before;
+        // the last step of a frame may begin before it ends
+        assert!((gone - speed * 0.48).abs() < 2e-3, "{speed}: {gone} s");
+    }
+    for wrong in [0.0, -1.0, f64::NAN] {
+        session.command(Command::Speed(wrong));
+        assert_eq!(session.state().refusal.map(|refusal| refusal.command), Some("speed"));
+        assert_eq!(session.state().speed, 0.25);
+    }
+    session.command(Command::Speed(f64::INFINITY));
+    assert!(session.state().refusal.is_none());
+    (0..1000).for_each(|_| session.advance(FRAME, AMPLE));
+    let state = session.state();
+    assert!(
+        state.finished && !state.running && (state.time - 2.0).abs() < 2e-3,
+        "it pauses at the end: {}",
+        state.time
+    );
+    session.command(Command::Run);
+    session.advance(FRAME, Duration::from_millis(1));
+    assert!(session.state().time > 2.0 + 1e-4 && session.state().running, "asked again it goes on");
+}
+
+#[test]
+fn a_breakdown_is_a_state_and_what_comes_after_it_goes_on() {
+    // 20 times the stable step
+    let mut session =
+        session("loads: [Gravity(acceleration: (0, 0, -9.81))], integration: (step: 0.2, when_unstable: Watch)");
+    session.command(Command::Run);
+    (0..200).for_each(|_| session.advance(FRAME, AMPLE));
+    let state = session.state();
+    let broken = state.breakdown.expect("it breaks down");
+    assert!(broken.body == "b" && !state.running && broken.to_string().contains("broke down"));
+    session.command(Command::Run);
+    session.advance(FRAME, AMPLE);
+    assert_eq!(session.state().refusal.map(|refusal| refusal.command), Some("run"));
+    session.command(Command::Load(scene(FALL)));
+    session.command(Command::Step(3));
+    let state = session.state();
+    assert!(state.breakdown.is_none() && state.step == 3);
+}
+
+#[test]
+fn a_wrong_scene_leaves_the_old_one_running() {
+    let mut session = session(FALL);
+    session.command(Command::Run);
+    session.advance(FRAME, AMPLE);
+    session.command(Command::Load(scene("loads: [Gravity(body: \"nobody\", acceleration: (0, 0, -9.81))]")));
+    let state = session.state();
+    let refusal = state.refusal.expect("it is refused");
+    assert!(refusal.command == "load" && refusal.reason.contains("nobody"), "{}", refusal.reason);
+    assert!(state.running && state.loaded.unwrap().number == 0);
+    let before = state.time;
+    session.advance(FRAME, AMPLE);
+    assert!(session.state().time > before);
+    session.command(Command::Set(vec!["materials.m.neo_hookean=Young(young: -1, poisson: 0.45)".into()]));
+    assert_eq!(session.state().refusal.map(|refusal| refusal.command), Some("set"));
+    session.command(Command::Load(scene(FALL)));
+    assert_eq!(session.state().loaded.unwrap().number, 1);
+}
+
+#[test]
+fn a_hand_pulls_until_it_lets_go_and_its_work_is_in_the_balance() {
+    let mut session = session(FALL);
+    let ray = (DVec3::new(0.05, 0.05, 1.0), DVec3::NEG_Z);
+    session.command(Command::Pick { origin: ray.0, direction: ray.1 });
+    let picked = session.state().picked.expect("the upper side");
+    assert!(picked.pick.body == "b" && picked.material == "m" && picked.element >= 18);
+    assert_eq!(picked.pick.element, picked.element as u64);
+    session.command(Command::Grab { hand: 1, origin: ray.0, direction: ray.1 });
+    for step in 1..=20 {
+        let target = picked.pick.point + DVec3::new(0.002, 0.0, 0.002) * f64::from(step);
+        session.command(Command::MoveGrab { hand: 1, target });
+        session.command(Command::Step(5));
+    }
+    let state = session.state();
+    let held = &state.held[0];
+    let along = (held.target - held.point).normalize();
+    assert!(held.hand == 1 && held.force.length() > 0.01 && held.force.normalize().dot(along) > 0.8, "{held:?}");
+    session.command(Command::Release { hand: 1 });
+    assert!(session.state().held.is_empty());
+    session.command(Command::Step(50));
+    let e = session.state().energies;
+    let work = e.load_work.unwrap();
+    let taken = e.kinetic + e.internal_work.unwrap() + e.damping_loss.unwrap();
+    // the bound of f32 runs in tests/physics/grab.rs
+    assert!(work.abs() > 1e-4 && (taken - work).abs() < 1e-3 * work.abs(), "{taken} J of {work} J");
+    // a hand beside the body holds nothing
+    session.command(Command::Grab { hand: 2, origin: DVec3::new(5.0, 5.0, 1.0), direction: DVec3::NEG_Z });
+    assert!(session.state().held.is_empty() && session.state().refusal.is_none());
+}
