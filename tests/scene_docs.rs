@@ -79,6 +79,75 @@ fn every_example_in_the_reference_is_sound() {
     }
 }
 
+/// All pages of the book, by their names.
+fn pages() -> Vec<(String, String)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let files = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().path());
+    let pages = files.filter(|file| file.extension().is_some_and(|ending| ending == "md"));
+    pages
+        .map(|file| (file.file_name().unwrap().display().to_string(), std::fs::read_to_string(&file).unwrap()))
+        .collect()
+}
+
+/// Every whole scene in the docs, which begins with a parenthesis; those that name files are tested where they are used.
+#[test]
+fn every_whole_scene_in_the_docs_is_sound() {
+    let mut tested = Vec::new();
+    for (page, text) in pages() {
+        let scenes = text.split("```ron\n").skip(1).filter_map(|rest| rest.split("```").next());
+        for scene in
+            scenes.filter(|scene| scene.starts_with('(') && !scene.contains("file:") && !scene.contains("path:"))
+        {
+            let scene =
+                SceneFile::from_text(&page, scene, Path::new(""), &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
+            let mut wrong = scene.diagnostics();
+            validate(&scene, &mut wrong);
+            assert!(!wrong.has_errors(), "{page}: {wrong}");
+            tested.push(page.clone());
+        }
+    }
+    assert!(["first_scene.md", "biomechanics.md", "games.md"].iter().all(|page| tested.iter().any(|t| t == page)));
+}
+
+/// The book has all pages, and nothing else; and its links lead to pages and headings that are there.
+#[test]
+fn the_book_has_every_page_and_its_links_lead_somewhere() {
+    let pages = pages();
+    let summary = &pages.iter().find(|(page, _)| page == "SUMMARY.md").unwrap().1;
+    let links = |text: &str| -> Vec<String> {
+        let behind = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+        behind.filter(|link| !link.contains("://") && !link.contains(' ')).map(str::to_string).collect()
+    };
+    let mut listed = links(summary);
+    listed.sort();
+    let mut there: Vec<String> =
+        pages.iter().map(|(page, _)| page.clone()).filter(|page| page != "SUMMARY.md").collect();
+    there.sort();
+    assert_eq!(listed, there);
+    // as the book and its hosts make them of headings
+    let anchor = |heading: &str| -> String {
+        let kept = heading.trim().chars().filter(|c| c.is_alphanumeric() || [' ', '-', '_'].contains(c));
+        kept.collect::<String>().to_lowercase().replace(' ', "-")
+    };
+    let headings = |text: &str| -> Vec<String> {
+        text.lines().filter(|line| line.starts_with('#')).map(|line| anchor(line.trim_start_matches('#'))).collect()
+    };
+    for (page, text) in &pages {
+        for link in links(text) {
+            let (file, heading) = link.split_once('#').unwrap_or((&link, ""));
+            let target = if file.is_empty() { page } else { file };
+            let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+            assert!(folder.join(target).exists(), "{page} has a link to {link}");
+            if let Some((_, text)) = pages.iter().find(|(other, _)| other == target).filter(|_| !heading.is_empty()) {
+                assert!(
+                    headings(text).iter().any(|h| h == heading),
+                    "{page} has a link to {link}: there is no such heading"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn a_scene_written_and_read_again_is_the_same() {
     for example in REFERENCE.split("```ron\n").skip(1).filter_map(|rest| rest.split("```").next()) {
