@@ -23,7 +23,7 @@ def test_a_sample_is_identified() -> None:
     identify = importlib.import_module("identify")
     scene = sinew.Scene.from_text(identify.TEST)
     young, poisson, runs = identify.identify(identify.measurement(scene, 3000, 0.45), scene)
-    # noise s of 2.6e-3 N along x, where the four forces of shearing change by 0.42 N for each unit of the logarithm of E
+    # noise s of 2.6e-3 N along x, where the forces of shearing change by 0.42 N for each unit of the logarithm of E
     # (their root of squares), bounds it with 3 s/0.42 = 2 %
     assert young == pytest.approx(3000, rel=0.02) and poisson == pytest.approx(0.45, abs=0.005)
     assert runs < 100
