@@ -1,0 +1,165 @@
+"""Sweeps: the same rows wherever they run, none twice, none lost."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import json
+import multiprocessing
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import sinew
+
+import kept
+from conftest import BLOCK, PULL
+
+# held below, under its weight
+SAGGING = BLOCK.replace(PULL, "Gravity(acceleration: (0, 0, -9.81))")
+YOUNG = "materials.tissue.neo_hookean.young"
+WAYS = [(0, 0, -9.81), (0, 0, -1.62), (3.0, 0, 0)]
+TABLE: list[dict[str, Any]] = sinew.grid({YOUNG: [3000, 6000, 12000], "loads[0].acceleration": WAYS})
+
+
+@pytest.fixture
+def sagging() -> sinew.Scene:
+    return sinew.Scene.from_text(SAGGING)
+
+
+def same(one: Sequence[sinew.Row], other: Sequence[sinew.Row]) -> bool:
+    """Whether all is the same to the last bit, but for what it took."""
+
+    def plain(row: sinew.Row) -> tuple[object, ...]:
+        places = {name: (value.dtype.str, value.shape, value.tobytes()) for name, value in row.kept.items()}
+        return (row.number, json.dumps(row.values), row.ended, row.error, row.time, places)
+
+    return [plain(row) for row in one] == [plain(row) for row in other]
+
+
+def test_rows_are_what_single_runs_give(sagging: sinew.Scene) -> None:
+    rows = sinew.sweep(sagging, TABLE, keep=kept.shape)
+    assert [row.number for row in rows] == list(range(9)) and {row.ended for row in rows} == {"finished"}
+    for row, values in zip(rows, TABLE, strict=True):
+        simulation = sinew.Simulation(sagging.with_values(values), backend="cpu", threads=1)
+        simulation.finish()
+        assert (row.kept["places"] == simulation.body("block").positions()).all()
+        assert row.time == simulation.time and row.kept["count"] == 64
+    # stiffer tissue sags less
+    assert rows[0].kept["mean"][2] < rows[3].kept["mean"][2] < rows[6].kept["mean"][2] < 0.05
+
+
+def test_probes_at_times(sagging: sinew.Scene) -> None:
+    (row,) = sinew.sweep(sagging, [{YOUNG: 5000}], keep=["top", "ground"], at=[0.01, 0.02, 0.1])
+    assert row.kept["top"].shape == (3, 3)
+    assert row.kept["top"][0, 2] > row.kept["top"][1, 2] > row.kept["top"][2, 2]
+
+
+def test_a_variant_that_breaks_down_is_a_row(sagging: sinew.Scene) -> None:
+    crushed = {"loads[0].acceleration": (0, 0, -3000)}
+    table: list[dict[str, Any]] = [{YOUNG: 3000}, crushed, {YOUNG: -1}, {YOUNG: 6000}]
+    rows = sinew.sweep(sagging, table, keep=["top"], at=[0.01, 0.1])
+    assert [row.ended for row in rows] == ["finished", "Unstable", "SceneError", "finished"]
+    assert "broke down" in str(rows[1].error) and 0 < rows[1].time < 0.1 and "young" in str(rows[2].error)
+    assert len(rows[1].kept.get("top", [])) < 2 == len(rows[0].kept["top"])
+
+
+def test_nothing_runs_twice(sagging: sinew.Scene, tmp_path: Path) -> None:
+    out = tmp_path / "rows.jsonl"
+    table: list[dict[str, Any]] = [*TABLE[:4], {"loads[0].acceleration": (0, 0, -3000)}]
+    first = sinew.sweep(sagging, table, keep=kept.shape, out=out)
+    lines = out.read_text().splitlines()
+    assert len(lines) == 5
+    assert same(sinew.sweep(sagging, table, keep=kept.shape, out=out), first)
+    assert out.read_text().splitlines() == lines
+    # of a sweep that was cut off in the middle of a line, what is missing runs
+    out.write_text("\n".join(lines[:3]) + "\n" + lines[3][:50])
+    assert same(sinew.sweep(sagging, table, keep=kept.shape, out=out), first)
+    again = out.read_text().splitlines()
+    assert len(again) == 6 and again[:3] == lines[:3]
+    # of another precision, other values, other things kept, nothing counts
+    sinew.sweep(sagging, table[:1], keep=kept.shape, out=out, precision="f64")
+    sinew.sweep(sagging, [{YOUNG: 3001}], keep=kept.shape, out=out)
+    sinew.sweep(sagging, table[:1], keep=["top"], out=out)
+    assert len(out.read_text().splitlines()) == 9
+    known = json.loads(lines[0])
+    assert {"key", "version", "number", "values", "ended", "error", "time", "kept", "seconds"} == set(known)
+
+
+def test_parts_are_the_whole(sagging: sinew.Scene) -> None:
+    whole = sinew.sweep(sagging, TABLE, keep=kept.shape)
+    parts = [sinew.sweep(sagging, TABLE, keep=kept.shape, part=(part, 4)) for part in (1, 2, 3, 4)]
+    assert [len(part) for part in parts] == [3, 2, 2, 2]
+    assert same(sorted(sum(parts, []), key=lambda row: row.number), whole)
+    with pytest.raises(ValueError, match="no part 5 of 4"):
+        sinew.sweep(sagging, TABLE, keep=kept.shape, part=(5, 4))
+
+
+@pytest.mark.parametrize("pack", [0.0, 1.0])
+def test_processes_give_the_same_bits(sagging: sinew.Scene, pack: float) -> None:
+    context = multiprocessing.get_context("spawn")
+    with concurrent.futures.ProcessPoolExecutor(2, mp_context=context) as pool:
+        rows = sinew.sweep(sagging, TABLE, keep=kept.shape, on=pool, pack=pack)
+    assert same(rows, sinew.sweep(sagging, TABLE, keep=kept.shape))
+
+
+def test_mistakes_of_ones_own_end_it(sagging: sinew.Scene, tmp_path: Path) -> None:
+    with pytest.raises(ZeroDivisionError, match="at 0.0999"):
+        sinew.sweep(sagging, TABLE, keep=kept.wrong, out=tmp_path / "rows.jsonl")
+    with pytest.raises(TypeError, match="cannot be kept"):
+        sinew.sweep(sagging, TABLE[:1], keep=lambda simulation: {"simulation": simulation})
+
+
+def test_dask_loses_a_worker_and_no_row(
+    sagging: sinew.Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setenv("SINEW_TEST_MARK", str(tmp_path / "mark"))
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
+    table = [{YOUNG: 3000 + 100 * number} for number in range(40)]
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        before = set(client.run(lambda: __import__("os").getpid()).values())
+        rows = sinew.sweep(sagging, table, keep=kept.shape_of_a_mortal, on=client, pack=0.1)
+        client.wait_for_workers(2)
+        after = set(client.run(lambda: __import__("os").getpid()).values())
+    # one of the two was killed in the middle of its work, and another came
+    assert (tmp_path / "mark").exists() and len(before & after) == 1
+    assert same(rows, sinew.sweep(sagging, table, keep=kept.shape))
+
+
+def test_ray_gives_the_same_bits(sagging: sinew.Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    ray = pytest.importorskip("ray")
+    monkeypatch.setenv("RAY_USAGE_STATS_ENABLED", "0")
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
+
+    class OnRay:
+        def submit(self, fn: object, /, *args: object) -> concurrent.futures.Future[object]:
+            future: concurrent.futures.Future[object] = ray.remote(fn).remote(*args).future()
+            return future
+
+    ray.init(num_cpus=2, include_dashboard=False)
+    try:
+        rows = sinew.sweep(sagging, TABLE, keep=kept.shape, on=OnRay())
+    finally:
+        ray.shutdown()
+    assert same(rows, sinew.sweep(sagging, TABLE, keep=kept.shape))
+
+
+def test_tables() -> None:
+    assert sinew.grid({"a": [1, 2], "b": ["x", "y"]}) == [
+        {"a": 1, "b": "x"},
+        {"a": 1, "b": "y"},
+        {"a": 2, "b": "x"},
+        {"a": 2, "b": "y"},
+    ]
+    table = sinew.latin_hypercube({"a": (0, 1), "b": (10, 30)}, 50, seed=7)
+    assert table == sinew.latin_hypercube({"a": (0, 1), "b": (10, 30)}, 50, seed=7)
+    assert table != sinew.latin_hypercube({"a": (0, 1), "b": (10, 30)}, 50, seed=8)
+    for place, low, high in (("a", 0, 1), ("b", 10, 30)):
+        shares = (np.array([row[place] for row in table]) - low) / (high - low)
+        # one in each of the intervals
+        assert sorted((shares * 50).astype(int)) == list(range(50))
