@@ -6,6 +6,7 @@ use crate::settings::{Settings, number};
 use glam::Vec3;
 use sinew::driver::{Body, BodyState};
 use sinew::mesh::Cells;
+use sinew::mesh::topology::MOST_NODES;
 use sinew::scene::schema::OutputField;
 use sinew_pictures::render::{Averages, Colouring, Faces, Finish, Layer, Lines, Outer, Plane, Section, Skin, creases};
 use std::collections::HashMap;
@@ -160,7 +161,7 @@ impl BodyMesh {
         let rest: Vec<Vec3> = skin.rest.iter().map(|place| place.as_vec3()).collect();
         let moved =
             skin.points.iter().zip(&rest).map(|(place, rest)| *rest + (place.as_vec3() - *rest) * settings.deformation);
-        let value = |(element, weights): (&i64, &[f32; _])| {
+        let value = |(element, weights): (&i64, &[f32; MOST_NODES])| {
             let nodes = self.places.get(element).map(|place| self.cells.nodes(*place)).unwrap_or_default();
             // a colour does not go beyond those around it
             let parts =
