@@ -111,7 +111,7 @@ impl Drawn<'_> {
         let depth = |normal: Vec3| vertices().map(|point| -normal.dot(*point)).fold(f32::MIN, f32::max);
         for placed in &self.tools {
             let layer = placed.layer(camera, &self.bodies, depth);
-            surfaces.push(Surface { layer, rest: &[], tissue: None });
+            surfaces.push(Surface { layer, rest: &[], normals: &[], tissue: None });
         }
         surfaces
     }

@@ -97,7 +97,7 @@ fn reaches(map: texture_depth_2d, clip: mat4x4f, position: vec3f, disc: f32) -> 
     for (var number = 0; number < 16; number++) {
         let turn = 2.39996 * f32(number);
         let aside = disc * sqrt((f32(number) + 0.5) / 16.0) * vec2f(cos(turn), sin(turn));
-        sum += textureSampleCompareLevel(map, nearer, place + aside, at.z);
+        sum += textureSampleCompareLevel(map, nearer, place + aside, clamp(at.z, 0.0, 1.0));
     }
     return sum / 16.0;
 }

@@ -21,6 +21,8 @@ pub struct Surface<'a> {
     pub layer: Layer<'a>,
     /// Where its vertices were at rest (m); empty where nothing is drawn there.
     pub rest: &'a [Vec3],
+    /// Normals at its vertices, of length 1, where they are known; empty where faces say.
+    pub normals: &'a [Vec3],
     /// Which kind of tissue it is made of, where no value colours it.
     pub tissue: Option<u8>,
 }
@@ -72,6 +74,9 @@ pub fn of(surfaces: &[Surface<'_>], camera: &Camera) -> Triangles {
 fn add(surface: &Surface<'_>, camera: &Camera, corners: &mut Vec<Corner>) {
     let layer = &surface.layer;
     let normals = match layer.flat {
+        None if surface.normals.len() == layer.vertices.len() => {
+            layer.faces.iter().map(|face| face.map(|point| surface.normals[point as usize])).collect()
+        }
         None => of_corners(layer.vertices, layer.faces),
         Some(normal) => vec![[normal; 4]; layer.faces.len()],
     };
