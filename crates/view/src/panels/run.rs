@@ -79,7 +79,7 @@ impl App {
             let end = loaded.scene.scene.duration.max(state.time);
             let mut time = state.time;
             let label = ui.label("Time").id;
-            ui.spacing_mut().slider_width = (ui.available_width() - 330.0).max(80.0);
+            ui.spacing_mut().slider_width = (ui.available_width() - 470.0).max(80.0);
             let slider = Slider::new(&mut time, 0.0..=end).show_value(false);
             let slider = ui.add(slider).labelled_by(label).on_hover_text("back to a state that was kept");
             let moved = slider.changed();
