@@ -135,12 +135,13 @@ fn time_goes_as_fast_as_on_the_wall_or_as_asked() {
 
 #[test]
 fn a_breakdown_is_a_state_and_what_comes_after_it_goes_on() {
-    // 20 times the stable step
+    // several times the stable step
     let mut session =
-        session("loads: [Gravity(acceleration: (0, 0, -9.81))], integration: (step: 0.2, when_unstable: Watch)");
+        session("loads: [Gravity(acceleration: (0, 0, -9.81))], integration: (step: 0.05, when_unstable: Watch)");
     session.command(Command::Run);
     (0..200).for_each(|_| session.advance(FRAME, AMPLE));
     let state = session.state();
+    assert_eq!(state.refusal, None);
     let broken = state.breakdown.expect("it breaks down");
     assert!(broken.body == "b" && !state.running && broken.to_string().contains("broke down"));
     session.command(Command::Run);

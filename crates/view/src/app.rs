@@ -79,7 +79,7 @@ impl App {
         let driver = Driver::start(start.options, move || wake.request_repaint());
         let picture = screen.map(|screen| {
             let scene3d = Scene3d::new(screen.device.clone(), screen.queue.clone(), (1, 1));
-            let filter = eframe::wgpu::FilterMode::Linear;
+            let filter = wgpu::FilterMode::Linear;
             let texture = screen.renderer.write().register_native_texture(&screen.device, scene3d.texture(), filter);
             Picture { screen, scene3d, texture }
         });
@@ -209,7 +209,7 @@ impl App {
     /// The picture, and what the mouse does in it.
     fn picture(&mut self, ui: &mut Ui) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Image, true, "Picture of the scene"));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture of the scene"));
         let frame = Frame { rect, scale: ui.ctx().pixels_per_point() };
         self.mouse(ui, &response, &frame);
         let tissues = self.scenery.tissues.clone();
@@ -310,7 +310,7 @@ impl Picture {
     fn draw(&mut self, scene: &Scene<'_>, camera: &sinew_pictures::render::Camera, size: glam::Vec2) {
         if self.scene3d.resize((size.x as u32, size.y as u32)) {
             let mut renderer = self.screen.renderer.write();
-            let filter = eframe::wgpu::FilterMode::Linear;
+            let filter = wgpu::FilterMode::Linear;
             let (device, texture) = (&self.screen.device, self.scene3d.texture());
             renderer.update_egui_texture_from_wgpu_texture(device, texture, filter, self.texture);
         }

@@ -80,7 +80,8 @@ impl App {
         if response.hovered() {
             self.orbit.zoom((0.004 * scroll.y).exp() * zoom);
         }
-        if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) {
+        let at = response.interact_pointer_pos().or_else(|| ui.input(|input| input.pointer.interact_pos()));
+        if let Some(at) = at.filter(|_| response.clicked()) {
             let (origin, direction) = self.ray(at, frame);
             self.driver.send(Command::Pick { origin, direction });
         }

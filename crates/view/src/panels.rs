@@ -23,7 +23,7 @@ pub fn number(number: f64) -> String {
 /// Keys and what they do.
 pub const KEYS: [(Key, &str, &str); 12] = [
     (Key::Space, "space", "run, pause"),
-    (Key::ArrowRight, "→", "one step (with shift: 100)"),
+    (Key::ArrowRight, "arrow right", "one step (with shift: 100)"),
     (Key::R, "R", "back to the start"),
     (Key::F, "F", "see all"),
     (Key::W, "W", "edges of elements"),

@@ -1,6 +1,6 @@
 //! A picture of the whole window, for who is not there to take it: `sinew-view SCENE --shot FILE --after 3`.
 
-use egui::{Event, Ui, UserData, ViewportCommand};
+use egui::{ScreenshotCallback, Ui, ViewportCommand};
 use sinew_pictures::render::{Image, write_png};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -23,23 +23,21 @@ impl Shot {
 
     /// Takes it when it is time, and closes the window when it is written.
     pub fn follow(&mut self, ui: &Ui) {
-        let taken = ui.input(|input| {
-            input.events.iter().find_map(|event| match event {
-                Event::Screenshot { image, .. } => Some(image.clone()),
-                _ => None,
-            })
-        });
-        if let Some(image) = taken {
+        ui.ctx().request_repaint_after(Duration::from_millis(50));
+        if Instant::now() < self.at || self.asked {
+            return;
+        }
+        self.asked = true;
+        let (context, path) = (ui.ctx().clone(), self.path.clone());
+        let taken = ScreenshotCallback::new(move |image| {
             let [width, height] = image.size;
             let pixels = image.pixels.iter().map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
-            if let Err(error) = write_png(&self.path, &Image { width, height, pixels }) {
+            if let Err(error) = write_png(&path, &Image { width, height, pixels }) {
                 eprintln!("sinew-view: {error}");
             }
-            ui.ctx().send_viewport_cmd(ViewportCommand::Close);
-        } else if Instant::now() >= self.at && !self.asked {
-            self.asked = true;
-            ui.ctx().send_viewport_cmd(ViewportCommand::Screenshot(UserData::default()));
-        }
-        ui.ctx().request_repaint_after(Duration::from_millis(50));
+            context.send_viewport_cmd(ViewportCommand::Close);
+            context.request_repaint();
+        });
+        ui.ctx().send_viewport_cmd(ViewportCommand::Screenshot(taken));
     }
 }

@@ -109,10 +109,9 @@ impl Drawn<'_> {
         let mut surfaces: Vec<Surface<'_>> = self.parts.iter().map(Part::surface).collect();
         let vertices = || self.parts.iter().filter(|part| part.finish != Finish::Ghost).flat_map(|part| &part.vertices);
         let depth = |normal: Vec3| vertices().map(|point| -normal.dot(*point)).fold(f32::MIN, f32::max);
-        let tool = |tool: &'_ Placed<'_>| tool.layer(camera, &self.bodies, depth);
         for placed in &self.tools {
-            let layer = tool(placed);
-            surfaces.push(Surface { layer, rest: &[], tissue: None });
+            let layer = placed.layer(camera, &self.bodies, depth);
+            surfaces.push(Surface { layer, rest: &[], normals: &[], tissue: None });
         }
         surfaces
     }

@@ -37,7 +37,7 @@ impl Place {
         let app = move |ui: &mut egui::Ui, app: &mut Option<App>| {
             app.get_or_insert_with(|| App::new(ui.ctx(), start.clone(), None)).show(ui);
         };
-        let mut harness = Harness::builder().with_size([1100.0, 700.0]).build_ui_state(app, None);
+        let mut harness = Harness::builder().with_size([1100.0, 700.0]).with_step_dt(0.02).build_ui_state(app, None);
         wait(&mut harness, "a scene", |state| state.loaded.is_some() && !state.bodies.is_empty());
         // the camera goes to where all is seen
         harness.step();
@@ -107,14 +107,12 @@ fn keys_and_boxes_change_what_is_seen() {
     wait(&mut harness, "values", |state| state.bodies[0].values.len() == 27);
 }
 
+/// Each event is a frame of its own.
 fn pointer(harness: &mut Harness<'static, Option<App>>, at: Pos2, pressed: Option<bool>, modifiers: Modifiers) {
-    harness.input_mut().modifiers = modifiers;
-    harness.event_modifiers(Event::PointerMoved(at), modifiers);
+    harness.event(Event::ModifiersChanged(modifiers));
+    harness.event(Event::PointerMoved(at));
     if let Some(pressed) = pressed {
-        harness.event_modifiers(
-            Event::PointerButton { pos: at, button: PointerButton::Primary, pressed, modifiers },
-            modifiers,
-        );
+        harness.event(Event::PointerButton { pos: at, button: PointerButton::Primary, pressed, modifiers });
     }
     harness.step();
 }
@@ -155,14 +153,14 @@ fn a_file_that_changes_is_read_again_and_a_wrong_one_tells_why_while_the_old_goe
     wait(&mut harness, "a refusal", |state| state.refusal.as_ref().is_some_and(|told| told.reason.contains("issue")));
     let time = state(&harness).time;
     wait(&mut harness, "the old scene to go on", |state| state.running && state.time > time);
-    assert!(harness.query_by_label_contains("issue").is_some(), "its text is seen");
+    assert!(harness.query_all_by_label_contains("issue").next().is_some(), "its text is seen");
     place.write("(3, 3, 3)", "(2, 2, 2)");
     later(20);
     wait(&mut harness, "the new scene", |state| state.refusal.is_none() && state.bodies[0].positions.len() == 27);
     place.write("duration: 1,", "durations: 1,");
     later(30);
     let started = Instant::now();
-    while harness.query_by_label_contains("durations").is_none() {
+    while harness.query_all_by_label_contains("durations").next().is_none() {
         assert!(started.elapsed() < Duration::from_secs(30), "a word that is none is told");
         std::thread::sleep(Duration::from_millis(20));
         harness.step();

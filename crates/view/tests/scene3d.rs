@@ -155,16 +155,16 @@ fn pictures_to_be_looked_at() {
     let made = [
         ("cube", cube(), Settings { wireframe: true, field: Some(OutputField::Displacement), ..Settings::default() }),
         ("cube_tissue", cube(), Settings { ghost: true, ..Settings::default() }),
-        ("lens", state("lens_pressed.ron", &[], steps(2000, None)), Settings::default()),
+        ("lens", state("lens_pressed.ron", &[], steps(600, None)), Settings::default()),
         (
             "lens_cut",
-            state("lens_pressed.ron", &[], steps(2000, stress)),
+            state("lens_pressed.ron", &[], steps(600, stress)),
             Settings { field: stress, cut: true, wireframe: true, ..Settings::default() },
         ),
         ("liver", liver, Settings::default()),
         (
             "liver_dark",
-            state("grasped_liver.ron", &[], steps(4000, stress)),
+            state("grasped_liver.ron", &[], steps(0, stress)),
             Settings { dark: true, field: stress, ..Settings::default() },
         ),
     ];

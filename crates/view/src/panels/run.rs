@@ -31,7 +31,7 @@ impl App {
             });
             ui.separator();
             let mut speed = self.state.speed;
-            ComboBox::from_id_salt("speed").selected_text(speed_text(speed)).show_ui(ui, |ui| {
+            ComboBox::from_label("speed").selected_text(speed_text(speed)).show_ui(ui, |ui| {
                 SPEEDS.iter().for_each(|each| drop(ui.selectable_value(&mut speed, *each, speed_text(*each))));
             });
             if speed != self.state.speed && self.state.speed > 0.0 {
@@ -59,7 +59,7 @@ impl App {
         let state = &self.state;
         match (&state.loaded, state.real_time_factor) {
             _ if self.driver.has_ended() => "the simulation ended by a mistake of sinew's own".into(),
-            (None, _) if self.driver.is_behind() => "loading …".into(),
+            (None, _) if self.driver.is_behind() => "loading".into(),
             (None, _) => "drop a scene here".into(),
             (_, Some(factor)) => format!("{} × real time", number(factor)),
             _ if state.breakdown.is_some() => "broke down".into(),
@@ -78,10 +78,11 @@ impl App {
             let state = self.state.clone();
             let end = loaded.scene.scene.duration.max(state.time);
             let mut time = state.time;
-            ui.label("Time");
-            ui.spacing_mut().slider_width = (ui.available_width() - 330.0).max(80.0);
+            let label = ui.label("Time").id;
+            ui.spacing_mut().slider_width = (ui.available_width() - 470.0).max(80.0);
             let slider = Slider::new(&mut time, 0.0..=end).show_value(false);
-            let moved = ui.add(slider).on_hover_text("back to a state that was kept").changed();
+            let slider = ui.add(slider).labelled_by(label).on_hover_text("back to a state that was kept");
+            let moved = slider.changed();
             if moved && time < state.time {
                 self.driver.send(Command::Pause);
                 self.driver.send(Command::Rewind(time));

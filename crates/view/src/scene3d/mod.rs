@@ -132,7 +132,7 @@ impl Scene3d {
                 usage: TextureUsages::TEXTURE_BINDING,
                 view_formats: &[],
             },
-            wgpu::util::TextureDataOrder::LayerMajor,
+            util::TextureDataOrder::LayerMajor,
             ramp.as_flattened(),
         );
         let ramp = ramp.create_view(&TextureViewDescriptor::default());

@@ -97,9 +97,9 @@ fn reaches(map: texture_depth_2d, clip: mat4x4f, position: vec3f, disc: f32) -> 
     for (var number = 0; number < 16; number++) {
         let turn = 2.39996 * f32(number);
         let aside = disc * sqrt((f32(number) + 0.5) / 16.0) * vec2f(cos(turn), sin(turn));
-        sum += textureSampleCompareLevel(map, nearer, place + aside, at.z);
+        sum += textureSampleCompareLevel(map, nearer, place + aside, clamp(at.z, 0.0, 1.0));
     }
-    return sum / 16.0.0;
+    return sum / 16.0;
 }
 
 // The light left at a place of a surface, or on the ground: of the key light and of the sky.
@@ -168,8 +168,8 @@ fn film(normal: vec3f, light: vec2f) -> f32 {
 
 // Tissue: light goes in, is scattered, and comes out redder beyond the edge of its shadow and where it is thin.
 fn tissue(normal: vec3f, rest: vec3f, number: u32, light: vec2f) -> vec3f {
-    let colour = tissues[2.0 * number];
-    let scatter = tissues[2.0 * number + 1.0];
+    let colour = tissues[2u * number];
+    let scatter = tissues[2u * number + 1u];
     let place = rest * (34.0 / view.middle.w);
     let mottled = 0.6 * noise(place) + 0.4 * noise(place * 3.1);
     let fine = place * 7.0;

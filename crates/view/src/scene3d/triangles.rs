@@ -21,6 +21,8 @@ pub struct Surface<'a> {
     pub layer: Layer<'a>,
     /// Where its vertices were at rest (m); empty where nothing is drawn there.
     pub rest: &'a [Vec3],
+    /// Normals at its vertices, of length 1, where they are known; empty where faces say.
+    pub normals: &'a [Vec3],
     /// Which kind of tissue it is made of, where no value colours it.
     pub tissue: Option<u8>,
 }
@@ -72,6 +74,9 @@ pub fn of(surfaces: &[Surface<'_>], camera: &Camera) -> Triangles {
 fn add(surface: &Surface<'_>, camera: &Camera, corners: &mut Vec<Corner>) {
     let layer = &surface.layer;
     let normals = match layer.flat {
+        None if surface.normals.len() == layer.vertices.len() => {
+            layer.faces.iter().map(|face| face.map(|point| surface.normals[point as usize])).collect()
+        }
         None => of_corners(layer.vertices, layer.faces),
         Some(normal) => vec![[normal; 4]; layer.faces.len()],
     };
@@ -98,7 +103,13 @@ fn add(surface: &Surface<'_>, camera: &Camera, corners: &mut Vec<Corner>) {
         };
         let edge = |side: usize| u32::from(bits >> side & 1);
         let of = |at: usize| (places[at], normals[row][at], rest[at], values[at]);
-        let mut put = |three: [(Vec3, Vec3, Vec3, f32); 3], edges: u32| {
+        let mut put = |mut three: [(Vec3, Vec3, Vec3, f32); 3], mut edges: u32| {
+            let turned = (three[1].0 - three[0].0).cross(three[2].0 - three[0].0);
+            if layer.flat.is_some_and(|normal| normal.dot(turned) < 0.0) {
+                // which way round a section's triangles go is not said
+                three.swap(1, 2);
+                edges = edges & 1 | (edges & 2) << 1 | (edges & 4) >> 1;
+            }
             for (which, (position, normal, rest, value)) in (0..).zip(three) {
                 let flags = which | edges << 2 | ((255.0 * ink) as u32) << 5 | common;
                 let [position, normal, rest] = [position, normal, rest].map(|vector| vector.to_array());

@@ -6,6 +6,7 @@ use crate::settings::{Settings, number};
 use glam::Vec3;
 use sinew::driver::{Body, BodyState};
 use sinew::mesh::Cells;
+use sinew::mesh::topology::MOST_NODES;
 use sinew::scene::schema::OutputField;
 use sinew_pictures::render::{Averages, Colouring, Faces, Finish, Layer, Lines, Outer, Plane, Section, Skin, creases};
 use std::collections::HashMap;
@@ -31,6 +32,8 @@ pub struct BodyMesh {
 pub struct Part {
     pub vertices: Vec<Vec3>,
     rest: Vec<Vec3>,
+    /// Where they are known.
+    normals: Vec<Vec3>,
     faces: Vec<[u32; 4]>,
     /// One a vertex; empty without a field.
     pub values: Vec<f32>,
@@ -110,6 +113,7 @@ impl BodyMesh {
             parts.push(Part {
                 vertices: self.rest.clone(),
                 rest: Vec::new(),
+                normals: Vec::new(),
                 faces: self.ghost.clone(),
                 values: Vec::new(),
                 finish: Finish::Ghost,
@@ -126,6 +130,7 @@ impl BodyMesh {
         Part {
             vertices: self.vertices.clone(),
             rest: self.rest.clone(),
+            normals: Vec::new(),
             faces,
             values: common.values.clone(),
             finish: if bared && common.tissue.is_none() { Finish::Bared } else { Finish::Plain },
@@ -160,7 +165,7 @@ impl BodyMesh {
         let rest: Vec<Vec3> = skin.rest.iter().map(|place| place.as_vec3()).collect();
         let moved =
             skin.points.iter().zip(&rest).map(|(place, rest)| *rest + (place.as_vec3() - *rest) * settings.deformation);
-        let value = |(element, weights): (&i64, &[f32; _])| {
+        let value = |(element, weights): (&i64, &[f32; MOST_NODES])| {
             let nodes = self.places.get(element).map(|place| self.cells.nodes(*place)).unwrap_or_default();
             // a colour does not go beyond those around it
             let parts =
@@ -177,6 +182,7 @@ impl BodyMesh {
             vertices: moved.collect(),
             faces: skin.triangles.iter().map(|[a, b, c]| [*a, *b, *c, *c]).collect(),
             rest,
+            normals: skin.normals.iter().map(|normal| normal.as_vec3()).collect(),
             values,
             finish: Finish::Plain,
             tissue: common.tissue,
@@ -200,6 +206,7 @@ impl BodyMesh {
         }
         Part {
             rest: section.vertices.clone(),
+            normals: Vec::new(),
             vertices: section.vertices,
             faces: section.faces,
             values: if common.values.is_empty() { Vec::new() } else { section.values },
@@ -225,6 +232,6 @@ impl Part {
             flat: self.flat,
             cut: self.cut,
         };
-        Surface { layer, rest: &self.rest, tissue: self.tissue }
+        Surface { layer, rest: &self.rest, normals: &self.normals, tissue: self.tissue }
     }
 }
