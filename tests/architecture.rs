@@ -198,6 +198,15 @@ fn what_is_said_of_the_architecture_is_there() {
     assert!(broken.is_empty(), "links to nowhere: {broken:?}");
 }
 
+/// The book has every page that its list of contents names.
+#[test]
+fn the_pages_of_the_book_are_there() {
+    let text = std::fs::read_to_string(root().join("docs/SUMMARY.md")).unwrap();
+    let pages: Vec<&str> = text.split("](").skip(1).filter_map(|rest| rest.split(')').next()).collect();
+    let missing: Vec<&&str> = pages.iter().filter(|page| !root().join("docs").join(page).is_file()).collect();
+    assert!(pages.len() > 15 && missing.is_empty(), "{} pages, not there: {missing:?}", pages.len());
+}
+
 #[test]
 fn every_system_is_a_file_of_its_name_and_a_line_of_the_step() {
     let registry = sinew::systems::Registry::default();
