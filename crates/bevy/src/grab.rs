@@ -1,0 +1,95 @@
+//! Grabbing: an entity that holds a point of a body.
+
+use crate::simulation::*;
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_transform::components::GlobalTransform;
+use sinew::{GrabId, Grip, Pick};
+
+/// A hand: spawn it to grab a point, change its target to pull, despawn it to let go.
+///
+/// ```ignore
+/// if let Some(pick) = simulation.pick_from(ray, place)? {
+///     let target = place.transform_point(pick.point.as_vec3());
+///     commands.spawn(SoftGrab::new(scene, pick, target));
+/// }
+/// ```
+#[derive(Component, Clone, Debug)]
+pub struct SoftGrab {
+    /// The scene's entity.
+    pub scene: Entity,
+    /// What was picked ([`SoftSimulation::pick_from`]).
+    pub pick: Pick,
+    /// Where it is pulled to, in the world.
+    pub target: Vec3,
+    /// How it is held.
+    pub grip: Grip,
+    /// The force with which it pulled at the end of the last tick (N), along the axes of the world.
+    pub force: Vec3,
+}
+
+impl SoftGrab {
+    /// Holds a point as stiffly as no step has to follow.
+    pub fn new(scene: Entity, pick: Pick, target: Vec3) -> Self {
+        Self { scene, pick, target, grip: Grip::default(), force: Vec3::ZERO }
+    }
+}
+
+/// What the engine knows of a hand.
+#[derive(Component)]
+pub(crate) struct Held {
+    id: GrabId,
+    scene: Entity,
+    target: Vec3,
+}
+
+/// Grabs what is to be held, and moves what is held.
+pub(crate) fn hold(
+    mut commands: Commands,
+    mut hands: Query<(Entity, &SoftGrab, Option<&mut Held>)>,
+    mut scenes: Query<(&mut SoftSimulation, &GlobalTransform)>,
+    mut refused: MessageWriter<Refused>,
+) {
+    for (hand, grab, held) in &mut hands {
+        let Ok((mut simulation, place)) = scenes.get_mut(grab.scene) else { continue };
+        let target = in_scene(place, grab.target);
+        let moved = match held {
+            Some(held) if held.target == grab.target => Ok(()),
+            Some(mut held) => {
+                held.target = grab.target;
+                simulation.move_grab(held.id, target)
+            }
+            None => simulation.grab(&grab.pick, &grab.grip).and_then(|id| {
+                commands.entity(hand).insert(Held { id, scene: grab.scene, target: grab.target });
+                simulation.move_grab(id, target)
+            }),
+        };
+        if let Err(error) = moved {
+            // what cannot be held, or was let go by going back, is no hand any more
+            refused.write(Refused { scene: grab.scene, error: error.to_string() });
+            commands.entity(hand).despawn();
+        }
+    }
+}
+
+/// Tells hands what they pull with.
+pub(crate) fn feel(
+    mut hands: Query<(&mut SoftGrab, &Held)>,
+    mut scenes: Query<(&mut SoftSimulation, &GlobalTransform)>,
+) {
+    for (mut grab, held) in &mut hands {
+        let Ok((mut simulation, place)) = scenes.get_mut(held.scene) else { continue };
+        if let Ok(force) = simulation.grab_force(held.id) {
+            grab.bypass_change_detection().force = place.rotation() * force.as_vec3();
+        }
+    }
+}
+
+/// Lets go when a hand goes.
+pub(crate) fn let_go(gone: On<Remove<Held>>, hands: Query<&Held>, mut scenes: Query<&mut SoftSimulation>) {
+    let Ok(held) = hands.get(gone.entity) else { return };
+    if let Ok(mut simulation) = scenes.get_mut(held.scene) {
+        // what went back to before it was grabbed does not hold it any more
+        let _ = simulation.release(held.id);
+    }
+}

@@ -1,0 +1,54 @@
+//! Picking and grabbing in a world whose y points up.
+
+use crate::*;
+use bevy_math::{Dir3, Vec3};
+use bevy_shape::Ray3d;
+use bevy_transform::components::GlobalTransform;
+
+#[test]
+fn a_hand_lifts_what_it_has_picked_and_lets_go() {
+    let mut app = app();
+    let (scene, other) = (spawn(&mut app, BAR), spawn(&mut app, BAR));
+    for scene in [scene, other] {
+        app.world_mut().entity_mut(scene).insert((z_up(), SoftProbes::default()));
+    }
+    update(&mut app, 3);
+    let place = *app.world().get::<GlobalTransform>(scene).unwrap();
+    // from above in the world: the scene's z is its y, the scene's y its -z
+    let ray = Ray3d { origin: Vec3::new(0.055, 1.0, -0.01), direction: Dir3::NEG_Y };
+    let pick = simulation_mut(&mut app, scene).pick_from(ray, &place).unwrap().expect("the bar is below");
+    let point = place.transform_point(pick.point.as_vec3());
+    // it has fallen for some ticks
+    assert!((point - Vec3::new(0.055, point.y, -0.01)).length() < 1e-6 && (0.01..0.02).contains(&point.y), "{point}");
+    let beside = Ray3d { origin: Vec3::new(1.0, 1.0, 0.0), direction: Dir3::NEG_Y };
+    assert_eq!(simulation_mut(&mut app, scene).pick_from(beside, &place).unwrap(), None);
+
+    let hand = app.world_mut().spawn(SoftGrab::new(scene, pick, point + 0.01 * Vec3::Y)).id();
+    update(&mut app, 10);
+    let force = app.world().get::<SoftGrab>(hand).unwrap().force;
+    let height = |app: &App, scene| app.world().get::<SoftProbes>(scene).unwrap().0["tip"][2];
+    assert!(height(&app, scene) > height(&app, other) + 1e-3);
+    assert!(force.y > 1e-4 && force.y > force.x.abs(), "{force}");
+    let lifted = height(&app, scene);
+    app.world_mut().get_mut::<SoftGrab>(hand).unwrap().target = point - 0.01 * Vec3::Y;
+    update(&mut app, 10);
+    assert!(height(&app, scene) < lifted - 1e-3);
+    assert_eq!(simulation(&app, scene).grabs().count(), 1);
+    app.world_mut().despawn(hand);
+    assert_eq!(simulation(&app, scene).grabs().count(), 0);
+}
+
+#[test]
+fn what_cannot_be_grabbed_is_refused() {
+    let mut app = app();
+    let scene = spawn(&mut app, BAR);
+    app.world_mut().get_mut::<SoftOptions>(scene).unwrap().options.grabs = false;
+    update(&mut app, 3);
+    let ray = Ray3d { origin: Vec3::new(0.05, 0.01, 1.0), direction: Dir3::NEG_Z };
+    let pick = simulation_mut(&mut app, scene).pick_from(ray, &GlobalTransform::IDENTITY).unwrap().unwrap();
+    let hand = app.world_mut().spawn(SoftGrab::new(scene, pick, Vec3::ZERO)).id();
+    update(&mut app, 2);
+    let refused = messages::<Refused>(&mut app);
+    assert!(refused.len() == 1 && refused[0].error.contains("grabs: true"), "{refused:?}");
+    assert!(app.world().get_entity(hand).is_err());
+}
