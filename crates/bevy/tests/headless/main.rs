@@ -1,5 +1,5 @@
-//! The plugin in apps without a window: Bevy's own plugins for tasks, time, assets, transforms and meshes, and updates in
-//! a loop.
+//! The plugin in apps without a window: Bevy's own plugins for tasks, time, assets, transforms and meshes, and updates
+//! in a loop.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod assets;
