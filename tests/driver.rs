@@ -14,10 +14,15 @@ const FRAME: Duration = Duration::from_millis(16);
 const AMPLE: Duration = Duration::from_secs(20);
 
 fn scene(further: &str) -> Box<SceneFile> {
+    held("", further)
+}
+
+/// Held below, and by more constraints.
+fn held(more: &str, further: &str) -> Box<SceneFile> {
     let text = format!(
         "(duration: 2, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3), elements: Hex8), material: \"m\")}},
         materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
-        constraints: [Fixed(on: Set(\"z0\"))], {further})"
+        constraints: [Fixed(on: Set(\"z0\")){more}], {further})"
     );
     Box::new(SceneFile::from_text("test.ron", &text, Path::new(""), &[]).unwrap())
 }
@@ -135,9 +140,10 @@ fn time_goes_as_fast_as_on_the_wall_or_as_asked() {
 
 #[test]
 fn a_breakdown_is_a_state_and_what_comes_after_it_goes_on() {
-    // several times the stable step
-    let mut session =
-        session("loads: [Gravity(acceleration: (0, 0, -9.81))], integration: (step: 0.05, when_unstable: Watch)");
+    // its upper side goes through its lower one
+    let mut session = Session::new(options());
+    let crushed = ", Prescribed(on: Set(\"z1\"), displacement: (0, 0, -0.3), curve: Ramp(end: 0.3))";
+    session.command(Command::Load(held(crushed, "")));
     session.command(Command::Run);
     (0..200).for_each(|_| session.advance(FRAME, AMPLE));
     let state = session.state();
