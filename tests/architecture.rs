@@ -152,7 +152,9 @@ fn prose_is_wrapped_at_120() {
 fn wgpu_is_known_in_one_place() {
     for (file, text) in files(&["src", "systems", "crates"], "rs") {
         let known = code(&text).contains("wgpu");
-        assert!(!known || file.starts_with("src/backend/gpu/"), "{file} knows wgpu");
+        // the viewer's window and its pictures are drawn with it, too
+        let may = ["src/backend/gpu/", "crates/view/"].iter().any(|place| file.starts_with(place));
+        assert!(!known || may, "{file} knows wgpu");
     }
 }
 

@@ -160,8 +160,8 @@ fn put_together(
     Ok(None)
 }
 
-/// A field of a body at the present step in the author's order: its numbers, one after the other, and how many there are
-/// of each node or element. Of several families of fibres that of the first.
+/// A field of a body at the present step in the author's order: its numbers, one after the other, and how many there
+/// are of each node or element. Of several families of fibres that of the first.
 ///
 /// # Errors
 /// What the GPU says.

@@ -1,4 +1,4 @@
-//! `sinew view`: the viewer, which is a program of its own, so that who simulates on a server has no windows to install.
+//! `sinew view`: the viewer, a program of its own, so that who simulates on a server has no windows to install.
 
 use super::Outcome;
 use super::arguments::ViewArguments;
