@@ -89,7 +89,8 @@ fn pages() -> Vec<(String, String)> {
         .collect()
 }
 
-/// Every whole scene in the docs, which begins with a parenthesis; those that name files are tested where they are used.
+/// Every whole scene in the docs, which begins with a parenthesis; those that name files are tested where they are
+/// used.
 #[test]
 fn every_whole_scene_in_the_docs_is_sound() {
     let mut tested = Vec::new();

@@ -5,9 +5,9 @@
 use sinew::backend::gpu::gpu_or_reason;
 use sinew_studies::hard::{CASES, Case, CaseConfiguration, run};
 
-/// Whether a configuration has its turn on this machine. A GPU in software takes a hundred times as long, and contact is
-/// the same kernels whatever it moves: there a case of contact is run with one kind of elements, each kind with a quarter
-/// of the cases. `sinew hard` leaves nothing out.
+/// Whether a configuration has its turn on this machine. A GPU in software takes a hundred times as long, and contact
+/// is the same kernels whatever it moves: there a case of contact is run with one kind of elements, each kind with a
+/// quarter of the cases. `sinew hard` leaves nothing out.
 fn has_turn(case: &Case, configuration: &CaseConfiguration, software: bool) -> bool {
     let number: usize = case.id[1..].parse().expect("a case has a number");
     let rows = || CaseConfiguration::all(true).into_iter().filter(|c| c.is_gpu() && case.has_row(c));
