@@ -72,10 +72,10 @@ impl App {
             Some(Drag::Grab(depth)) => self.pull(depth, response, frame),
             None => {}
         }
-        if response.drag_stopped() || (self.drag.is_some() && !response.dragged() && !response.drag_started()) {
-            if let Some(Drag::Grab(_)) = self.drag.take() {
-                self.driver.send(Command::Release { hand: HAND });
-            }
+        let is_over =
+            response.drag_stopped() || (self.drag.is_some() && !response.dragged() && !response.drag_started());
+        if is_over && let Some(Drag::Grab(_)) = self.drag.take() {
+            self.driver.send(Command::Release { hand: HAND });
         }
         if response.hovered() {
             self.orbit.zoom((0.004 * scroll.y).exp() * zoom);
