@@ -8,7 +8,7 @@ use std::process::Command;
 fn tree(packages: &[&str], edges: &str, format: &str) -> BTreeSet<String> {
     let mut cargo = Command::new(env!("CARGO"));
     cargo.args(["tree", "--offline", "--prefix", "none", "--no-dedupe", "--format", format, "--edges", edges]);
-    packages.iter().for_each(|package| drop(cargo.args(["--package", package])));
+    cargo.args(packages.iter().flat_map(|package| ["--package", package]));
     let output = cargo.current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).unwrap().lines().map(|line| line.trim_end().to_string()).collect()
