@@ -5,8 +5,8 @@
 use sinew::backend::gpu::gpu_or_reason;
 use sinew_studies::hard::{CASES, Case, CaseConfiguration, run};
 
-/// Whether a configuration has its turn on this machine. A GPU in software takes a hundred times as long: there a case is
-/// run with two kinds of elements, plain ones and those with a mean pressure by turns. Contact is the same kernels
+/// Whether a configuration has its turn on this machine. A GPU in software takes a hundred times as long: there a case
+/// is run with two kinds of elements, plain ones and those with a mean pressure by turns. Contact is the same kernels
 /// whatever it moves: its cases are run with one kind, each kind with a quarter of them. `sinew hard` leaves nothing
 /// out.
 fn has_turn(case: &Case, configuration: &CaseConfiguration, software: bool) -> bool {
