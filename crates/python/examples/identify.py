@@ -67,8 +67,9 @@ def identify(measured: NDArray[np.float64], scene: sinew.Scene) -> tuple[float, 
 def measurement(scene: sinew.Scene, young: float, poisson: float) -> NDArray[np.float64]:
     """Forces with noise of 1 % of the largest in each direction (N)."""
     exact = forces(scene, young, poisson)
-    noise = np.random.default_rng(1).normal(size=exact.shape)
-    return exact + 0.01 * np.abs(exact).max(axis=0) * noise
+    noise: NDArray[np.float64] = np.random.default_rng(1).normal(size=exact.shape)
+    noise *= 0.01 * np.abs(exact).max(axis=0)
+    return exact + noise
 
 
 def main() -> None:
