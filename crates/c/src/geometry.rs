@@ -16,14 +16,7 @@ impl State {
     /// Normals at nodes: the mean of those of their triangles by area; 0 where a node is in none.
     fn normals(&mut self, body: &str) -> Outcome<Vec<DVec3>> {
         let places = self.positions(body)?;
-        let mut normals = vec![DVec3::ZERO; places.len()];
-        for nodes in self.simulation.surface_triangles(body)? {
-            let [a, b, c] = nodes.map(|node| places[node as usize]);
-            // its length is twice the area
-            let normal = (b - a).cross(c - a);
-            nodes.into_iter().for_each(|node| normals[node as usize] += normal);
-        }
-        Ok(normals.into_iter().map(DVec3::normalize_or_zero).collect())
+        Ok(sinew::skins::normals(&places, &self.simulation.surface_triangles(body)?))
     }
 
     fn generation(&mut self, body: &str) -> Outcome<u64> {

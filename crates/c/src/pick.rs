@@ -8,7 +8,7 @@ use sinew::{GrabId, Grip, Pick};
 use std::ffi::c_char;
 
 /// Where a ray meets a body.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 #[repr(C)]
 pub struct SinewPick {
     /// `sizeof(SinewPick)`.
@@ -71,23 +71,6 @@ impl SinewPick {
             distance: pick.distance,
         }
     }
-
-    fn missed() -> Self {
-        let zero = [0.0; 3];
-        let (nodes, body, element) = ([0; 3], 0, 0);
-        Self {
-            size: 0,
-            hit: 0,
-            body,
-            element,
-            nodes,
-            reserved: 0,
-            weights: zero,
-            point: zero,
-            normal: zero,
-            distance: 0.0,
-        }
-    }
 }
 
 unsafe fn grip(from: *const SinewGrip) -> Outcome<Grip> {
@@ -128,7 +111,7 @@ pub unsafe extern "C" fn sinew_pick(
         let (origin, direction) = (vector(origin, "origin")?, vector(direction, "direction")?);
         let found = with(simulation, |state, handle| {
             let found = state.simulation.pick(origin, direction)?;
-            Ok(found.map_or_else(SinewPick::missed, |pick| SinewPick::new(&pick, handle.body_number(&pick.body))))
+            Ok(found.map_or_else(SinewPick::default, |pick| SinewPick::new(&pick, handle.body_number(&pick.body))))
         })?;
         write(pick, found, "pick")
     })
