@@ -22,9 +22,9 @@ const TOOL_CAPSULE: u32 = 3u;
 const TOOL_CYLINDER: u32 = 4u;
 const TOOL_CONE: u32 = 5u;
 
-// Beyond one and below the other (m) squares are no numbers.
+// Beyond one (m) squares are no numbers; below the other so small that devices which round them to 0 lose digits.
 const TOOL_FAR: f32 = 1e15;
-const TOOL_NEAR: f32 = 1e-18;
+const TOOL_NEAR: f32 = 1e-15;
 
 // How far beyond the nearer of two ends (m), and the direction there; the first end first.
 fn tool_ends(z: f32, low: f32, high: f32) -> vec2<f32> {

@@ -24,7 +24,7 @@ pub const MARCH: &str = "struct Step { number: u32, push: f32 }
 @compute @workgroup_size(64)
 fn march(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x < arrayLength(&state) {
-        state[id.x] = state[id.x] * 0.75 + step.push + f32(step.number % 7u) * f32(id.x + 1u);
+        state[id.x] = fma(state[id.x], 0.75, step.push) + f32(step.number % 7u) * f32(id.x + 1u);
     }
 }
 ";
@@ -39,7 +39,7 @@ fn march(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var i = 0u; i < step_records.count; i++) {
         let step = step_records.steps[i];
         if id.x < arrayLength(&state) {
-            state[id.x] = state[id.x] * 0.75 + step.push + f32(step.number % 7u) * f32(id.x + 1u);
+            state[id.x] = fma(state[id.x], 0.75, step.push) + f32(step.number % 7u) * f32(id.x + 1u);
         }
     }
 }

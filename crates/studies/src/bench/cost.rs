@@ -7,6 +7,8 @@ use sinew::elements::{Element, MOST_NODES, PressureFrom};
 use sinew::elements::{ElementTask, node_count, point_count, run_with_element};
 use sinew::materials::{Elastic, Fibres, NeoHookean, PronyTerm};
 use sinew::math::{LANES, Real, Sym3, Task, refine_inverse_cbrt};
+use sinew::mesh::ElementKind;
+use sinew::mesh::generators::box_mesh;
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -48,19 +50,19 @@ pub fn cost(case: &Case, elements: u64, nodes: u64) -> Cost {
         4.0 * corners + corners * (4.0 + 2.0 * 3.0 * number) + a_node * 3.0 * number
     };
     // cubes of cubes: what only other shapes need is left out
-    let (rows, flops) = run_with_element(kind, RowsAndFlops(case.effects));
+    let (rows, flops) = run_with_element(kind, RowsAndFlops(kind, case.effects));
     let shape = rows as f64 * number;
     Cost { flops, bytes: shape + history + forces + a_node * of_node }
 }
 
 /// Numbers of the rest shape and operations of an element kind with these effects.
-struct RowsAndFlops(Effects);
+struct RowsAndFlops(ElementKind, Effects);
 
 impl ElementTask for RowsAndFlops {
     type Output = (usize, f64);
 
     fn run<E: Element>(self) -> (usize, f64) {
-        (<E::Specialisation as Element>::ROWS, flops::<E::Specialisation>(self.0))
+        (<E::Specialisation as Element>::ROWS, flops::<E::Specialisation>(self.0, self.1))
     }
 }
 
@@ -144,14 +146,11 @@ impl Real for Counted {
 }
 
 /// Operations of one element, by doing them.
-fn flops<E: Element>(effects: Effects) -> f64 {
+fn flops<E: Element>(kind: ElementKind, effects: Effects) -> f64 {
     let zero = Counted(0.0);
-    let points: Vec<glam::DVec3> = match E::NODES {
-        4 => vec![glam::DVec3::ZERO, glam::DVec3::X, glam::DVec3::Y, glam::DVec3::Z],
-        _ => [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
-            .map(|(x, y, z)| glam::DVec3::new(f64::from(x), f64::from(y), f64::from(z)))
-            .to_vec(),
-    };
+    // any will do: what is counted does not depend on the shape
+    let Ok(cube) = box_mesh(glam::DVec3::ONE, (1, 1, 1), kind) else { return f64::NAN };
+    let points: Vec<glam::DVec3> = cube.cells.nodes(0).iter().map(|&node| cube.points[node as usize]).collect();
     let shape = E::rest_shape(&points, 3000.0);
     let shape = |row: usize| Counted(shape[row]);
     let law = NeoHookean { shear: Counted(1034.0), bulk: Counted(1e4) };
@@ -221,6 +220,10 @@ mod tests {
         assert!((180.0..300.0).contains(&tet.flops), "{tet:?}");
         let apart = cost(&Case { fuse: false, ..case(ElementKind::Tet4, Effects::None) }, 48_000, 9261);
         assert!((14.0..18.0).contains(&(apart.bytes - tet.bytes)), "forces and loads of a fifth of a node");
+        for kind in ElementKind::ALL {
+            let one = cost(&case(kind, Effects::None), 48_000, 9261);
+            assert!(one.flops >= tet.flops && one.flops < 1e4 && one.bytes.is_finite(), "{kind:?}: {one:?}");
+        }
         let all = cost(&case(ElementKind::Tet4, Effects::FibresViscosity), 48_000, 9261);
         assert!(all.flops > tet.flops + 50.0 && all.bytes == tet.bytes + 48.0, "{all:?}");
         let hex = cost(&case(ElementKind::Hex8, Effects::None), 8_000, 9261);
