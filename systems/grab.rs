@@ -62,17 +62,19 @@ impl NodeSystem for Grabs {
 
     /// Whatever the nodes' masses are by now: see [`HeldNode`].
     fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
-        let of_node = |nodes: &[HeldNode]| {
-            let each = nodes.iter().map(|held| ForceSlopes {
-                // the same in all directions
-                stiffness: held.stiffness_over_mass,
-                damping: held.damping_over_mass,
-            });
-            each.fold(ForceSlopes::default(), ForceSlopes::and)
-        };
+        let of_node = |nodes: &[HeldNode]| nodes.iter().map(slopes_of).fold(ForceSlopes::NONE, ForceSlopes::and);
         let all = self.held.chunk_by(|one, next| one.row == next.row).map(of_node);
-        all.fold(ForceSlopes::default(), ForceSlopes::larger)
+        all.fold(ForceSlopes::NONE, ForceSlopes::larger)
     }
+
+    fn slopes_by_row(&self, _: &NodesAtRest<'_>, each: &mut dyn FnMut(usize, ForceSlopes)) {
+        self.held.iter().for_each(|held| each(held.row as usize, slopes_of(held)));
+    }
+}
+
+/// Of one spring and damper: the same in all directions.
+fn slopes_of(held: &HeldNode) -> ForceSlopes {
+    ForceSlopes { stiffness: held.stiffness_over_mass, damping: held.damping_over_mass }
 }
 
 /// The name of the uniform that holds a body's held nodes.

@@ -1,6 +1,7 @@
 //! What systems say of the forces that they bring, for who chooses steps and who tells energies: those of nodes by
 //! their trait, those of the host by functions of their own.
 
+use super::node_slopes::NodeSlopes;
 use super::node_views::ForceSlopes;
 use super::system::System;
 use crate::components::HeldEnergy;
@@ -9,15 +10,19 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::system::{IntoSystem, RunSystemOnce};
 use std::sync::Arc;
 
-/// Tells how fast the forces of a system grow, in a scene that lasts so long (s).
-pub(crate) type SlopesOf = Arc<dyn Fn(f64, &mut World) -> Result<ForceSlopes, Error> + Send + Sync>;
+/// Adds how fast the forces of a system grow, in a scene that lasts so long (s).
+pub(crate) type SlopesOf = Arc<dyn Fn(f64, &mut World, &mut NodeSlopes) -> Result<(), Error> + Send + Sync>;
+
+/// Tells how fast those of a system on the host grow, wherever they are.
+pub(super) type HostSlopes = Arc<dyn Fn(&mut World) -> Result<ForceSlopes, Error> + Send + Sync>;
 
 impl System {
     /// How fast the forces of a custom system on the host grow with displacements and velocities, for the stable step:
     /// norms of −∂f/∂u and −∂f/∂v over the mass of a node, the largest of all nodes and of all that the scene lasts
     /// ([`NodeSystem::slopes`](super::NodeSystem::slopes) is the same of node systems). `slopes` is a bevy system that
     /// finds them; it runs when the simulation is made, with the parameters of the scene, and again where forces are
-    /// counted anew. Without it the stable step takes them for [`ForceSlopes::NONE`].
+    /// counted anew. Without it the stable step takes them for [`ForceSlopes::NONE`]. At which nodes these forces are
+    /// nobody says: the step is chosen as if they were at the node where the others are stiffest.
     ///
     /// What it asks for and is not there when the simulation is made, and numbers that are not finite or below 0, are
     /// errors of making it.
@@ -26,9 +31,8 @@ impl System {
         slopes: impl IntoSystem<(), ForceSlopes, M> + Clone + Send + Sync + 'static,
     ) -> Self {
         let name = self.name.clone();
-        self.slopes = Some(Arc::new(move |_, world| {
-            world.run_system_once(slopes.clone()).map_err(|e| failed(&name, "slopes", &e))
-        }));
+        self.slopes =
+            Some(Arc::new(move |world| world.run_system_once(slopes.clone()).map_err(|e| failed(&name, "slopes", &e))));
         self
     }
 
@@ -47,12 +51,18 @@ impl System {
 
     /// What tells how fast its forces grow, if it says so.
     pub(crate) fn slopes(&self) -> Option<SlopesOf> {
-        let find = match self.host.nodes() {
-            Some(rows) => Arc::new(move |duration: f64, world: &mut World| Ok(rows.slopes(duration, world))),
-            None => self.slopes.clone()?,
-        };
         let name = self.name.clone();
-        Some(Arc::new(move |duration, world| sound(find(duration, world)?, &name)))
+        if let Some(rows) = self.host.nodes() {
+            return Some(Arc::new(move |duration, world, all| {
+                sound(rows.slopes(duration, world, all), &name)?;
+                Ok(())
+            }));
+        }
+        let find = self.slopes.clone()?;
+        Some(Arc::new(move |_, world, all| {
+            all.add_everywhere(sound(find(world)?, &name)?);
+            Ok(())
+        }))
     }
 
     /// What tells which energy it holds, if it says so.

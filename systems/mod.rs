@@ -48,6 +48,7 @@ mod nodal_volume;
 mod node_pass;
 mod node_shares;
 mod node_slices;
+mod node_slopes;
 mod node_stages;
 mod node_system;
 mod node_views;
@@ -81,6 +82,7 @@ pub use nodal_force::NodalForce;
 pub(crate) use nodal_volume::means_of;
 pub(crate) use node_pass::{NodePass, node_pass, shared_pass};
 pub(crate) use node_shares::{give_shares, mark};
+pub(crate) use node_slopes::NodeSlopes;
 #[doc(hidden)]
 pub use node_system::NodeRows;
 pub use node_system::NodeSystem;

@@ -2,6 +2,7 @@
 //! step.
 
 use super::node_shares::{ShareOf, WantedShare, share_of, wanted_shares};
+use super::node_slopes::NodeSlopes;
 use super::node_views::{Before, ForceSlopes, MiddleOfStep, NodesAtRest};
 use super::rows::{RowSet, Rows, row_set};
 use super::system::HostSystem;
@@ -14,7 +15,6 @@ use bevy_ecs::system::IntoSystem;
 use bevy_ecs::world::FilteredEntityRef;
 use bumpalo::Bump;
 use smallvec::SmallVec;
-use std::collections::BTreeMap;
 use std::mem::needs_drop;
 
 /// What a system does to the nodes of a body, row by row. Its component calls for it: each entity that has one and
@@ -76,6 +76,17 @@ pub trait NodeSystem: Component {
     /// }
     /// ```
     fn slopes(&self, nodes: &NodesAtRest<'_>) -> ForceSlopes;
+
+    /// The same node by node: `each` takes a row and the slopes of a force there, once for every force. Forces at the
+    /// same node make the step smaller together, those at others do not. Left out: `slopes` at all nodes that it is
+    /// for, as [`rows`](Self::rows) says; a system whose nodes change, or that [chooses](Self::choose) them, at all.
+    fn slopes_by_row(&self, nodes: &NodesAtRest<'_>, each: &mut dyn FnMut(usize, ForceSlopes)) {
+        let slopes = self.slopes(nodes);
+        match self.rows() {
+            Rows::List(rows) => rows.iter().for_each(|&row| each(row as usize, slopes)),
+            Rows::All | Rows::Changing => (0..nodes.mass.len()).for_each(|row| each(row, slopes)),
+        }
+    }
 
     /// The energy (J) that it holds and gives back, as a spring does, of the nodes' places in the middle of a step. It
     /// is told with the others ([`Energies::held`]); the work of all loads is counted in any case.
@@ -168,7 +179,7 @@ pub struct NodeRows {
     with_callers: fn(&mut QueryBuilder),
     bind: Bind,
     touches: fn() -> HostSystem,
-    slopes: fn(Option<OfSystem>, f64, &mut World) -> ForceSlopes,
+    slopes: fn(Option<OfSystem>, f64, &mut World, &mut NodeSlopes) -> ForceSlopes,
     energy: fn(Option<OfSystem>, &mut World) -> Option<f64>,
     wanted_shares: fn(Option<OfSystem>, f64, &mut World) -> Vec<WantedShare>,
     give_share: fn(&mut World, Entity, NodeShare),
@@ -242,9 +253,10 @@ impl NodeRows {
         (self.bind)(callers, self.of, body, before, arena, all);
     }
 
-    /// How fast the forces that it adds grow, in a scene that lasts so long (s): see [`NodeSystem::slopes`].
-    pub(crate) fn slopes(&self, duration: f64, world: &mut World) -> ForceSlopes {
-        (self.slopes)(self.of, duration, world)
+    /// Adds how fast the forces that it adds grow, in a scene that lasts so long (s): see [`NodeSystem::slopes`]. Gives
+    /// the largest.
+    pub(super) fn slopes(&self, duration: f64, world: &mut World, all: &mut NodeSlopes) -> ForceSlopes {
+        (self.slopes)(self.of, duration, world, all)
     }
 
     /// The energy (J) that it holds, where it says so: see [`NodeSystem::energy`].
@@ -301,19 +313,28 @@ fn bind<'a, S: NodeSystem>(
     }
 }
 
-/// Of all that calls for a system: together on one body, the largest of all bodies.
-fn slopes<S: NodeSystem>(of_system: Option<OfSystem>, duration: f64, world: &mut World) -> ForceSlopes {
-    let mut bodies: BTreeMap<Entity, ForceSlopes> = BTreeMap::new();
+/// Of all that calls for a system.
+fn slopes<S: NodeSystem>(
+    of_system: Option<OfSystem>,
+    duration: f64,
+    world: &mut World,
+    all: &mut NodeSlopes,
+) -> ForceSlopes {
+    let mut largest = ForceSlopes::NONE;
     let mut callers = world.query::<(Entity, &S, Option<&OfBody>, Option<&OfSystem>)>();
     for (entity, system, of, _) in callers.iter(world).filter(|caller| caller.3.copied() == of_system) {
         let body = of.map_or(entity, |of| of.0);
         if let Some(nodes) = NodesAtRest::of(world, body, duration) {
-            let sum = bodies.entry(body).or_default();
-            // a negative norm would take from the others; what is no number is the guards' business
-            *sum = sum.and(system.slopes(&nodes).larger(ForceSlopes::default()));
+            let mut of_body = all.of_body(body);
+            system.slopes_by_row(&nodes, &mut |row, slopes| {
+                // a negative norm would take from the others; what is no number is the guards' business
+                let slopes = slopes.larger(ForceSlopes::NONE);
+                largest = largest.larger(slopes);
+                of_body.add(row, slopes);
+            });
         }
     }
-    bodies.into_values().fold(ForceSlopes::default(), ForceSlopes::larger)
+    largest
 }
 
 /// Of all that calls for a system, on all bodies together.

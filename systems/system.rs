@@ -1,6 +1,6 @@
 //! What a system is.
 
-use super::host_forces::SlopesOf;
+use super::host_forces::HostSlopes;
 use super::node_pass::{NodePass, node_pass};
 use super::node_stages::derived_stages;
 use super::node_system::{NodeRows, NodeSystem};
@@ -137,7 +137,7 @@ pub struct System {
     /// Reads its parameters and inserts them as a resource.
     pub(crate) parameters: Option<ReadParameters>,
     /// How fast the forces of a system on the host grow, and what energy it holds, where it says so.
-    pub(crate) slopes: Option<SlopesOf>,
+    pub(crate) slopes: Option<HostSlopes>,
     pub(crate) energy: Option<HeldEnergy>,
     /// How its state gets into snapshots and back.
     pub(crate) state: Option<StateAccess>,

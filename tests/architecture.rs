@@ -71,10 +71,26 @@ fn module(part: &str) -> &str {
     part.rsplit('/').next().unwrap()
 }
 
+/// What the crate gives out under its own name, with the part that it is of: `crate::Simulation` is `simulation`'s.
+fn given_out() -> BTreeMap<String, String> {
+    let root = code(&std::fs::read_to_string(root().join("src/lib.rs")).unwrap());
+    let mut found = BTreeMap::new();
+    for path in root.split("pub use ").skip(1).filter_map(|rest| rest.split(';').next()) {
+        // what the prelude has again is in the list already
+        let Some((part, names)) = path.split_once("::").filter(|(part, _)| *part != "crate") else { continue };
+        let names = names.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|name| !name.is_empty());
+        found.extend(names.map(|name| (name.to_owned(), part.to_owned())));
+    }
+    assert!(found.get("Simulation").is_some_and(|part| part == "simulation"), "{found:?}");
+    found
+}
+
 /// Modules and crates of the repository that code names.
 fn named(code: &str) -> Vec<String> {
     let crates = ["pictures", "studies"].into_iter().filter(|name| code.contains(&format!("sinew_{name}::")));
-    imports(code).into_iter().chain(crates.map(String::from)).collect()
+    let given_out = given_out();
+    let modules = imports(code).into_iter().map(|name| given_out.get(&name).cloned().unwrap_or(name));
+    modules.chain(crates.map(String::from)).collect()
 }
 
 /// What a part names that stands behind it.
@@ -116,6 +132,8 @@ fn an_import_that_runs_the_other_way_is_found() {
     let backend = "use crate::{math::Real, evaluation::{BlockView, ElementState}};";
     assert_eq!(named_too_early(&parts, "src/backend", backend), ["evaluation"]);
     assert_eq!(named_too_early(&parts, "src/evaluation", backend), [""; 0]);
+    let through_the_root = "use crate::{Simulation, math::Real, SceneFile};";
+    assert_eq!(named_too_early(&parts, "src/backend", through_the_root), ["simulation"]);
     let pictures = "use sinew::mesh::Mesh;\nuse sinew_studies::hard::CASES;";
     assert_eq!(named_too_early(&parts, "crates/pictures", pictures), ["studies"]);
 }

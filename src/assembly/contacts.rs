@@ -2,6 +2,7 @@
 
 use super::body_columns::stiffness;
 use super::{Assembly, BodyParts};
+use crate::backend::cpu::Cpu;
 use crate::components::*;
 use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
@@ -34,7 +35,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
     if scene.contacts.is_empty() {
         return;
     }
-    let geometries = geometries(assembly.scene, diagnostics);
+    let geometries = geometries(assembly.scene, world, diagnostics);
     for (name, body) in &assembly.bodies {
         let mut marks: BTreeMap<u32, u32> = BTreeMap::new();
         let mut tools = Vec::new();
@@ -108,7 +109,11 @@ pub(super) fn may_slip(tool: &str, body: &str, (geometry, edge): (&Geometry, f64
 }
 
 /// What the tools are made of, by name.
-pub(super) fn geometries(scene: &SceneFile, diagnostics: &mut Diagnostics) -> BTreeMap<String, Geometry> {
+pub(super) fn geometries(
+    scene: &SceneFile,
+    world: &World,
+    diagnostics: &mut Diagnostics,
+) -> BTreeMap<String, Geometry> {
     let mut all = BTreeMap::new();
     for (name, tool) in &scene.scene.tools {
         if let Some(shape) = &tool.shape {
@@ -116,7 +121,7 @@ pub(super) fn geometries(scene: &SceneFile, diagnostics: &mut Diagnostics) -> BT
             all.extend(solid.ok().map(|solid| (name.clone(), Geometry::Analytic(solid))));
         } else if let Some(mesh) = &tool.mesh {
             let path = format!("tools.\"{name}\".mesh");
-            match grid(scene, mesh) {
+            match grid(scene, mesh, world) {
                 Ok(grid) => {
                     for note in grid.notes() {
                         diagnostics.warn_at(path.as_str(), format!("{}: {note}", mesh.path));
@@ -133,13 +138,15 @@ pub(super) fn geometries(scene: &SceneFile, diagnostics: &mut Diagnostics) -> BT
 }
 
 /// The distances of a tool that is a file of triangles.
-fn grid(scene: &SceneFile, mesh: &ToolMesh) -> Result<DistanceGrid, String> {
+fn grid(scene: &SceneFile, mesh: &ToolMesh, world: &World) -> Result<DistanceGrid, String> {
     let bytes = scene.bytes(&mesh.path, u64::MAX).map_err(|error| format!("{}: {error}", mesh.path))?;
     let beside = |name: &str| scene.bytes_beside(&mesh.path, name);
     let mut surface = Triangles::from_bytes_beside(&mesh.path, &bytes, &beside).map_err(|error| error.to_string())?;
     surface.points.iter_mut().for_each(|point| *point *= mesh.scale);
     let spacing = mesh.spacing.unwrap_or_else(|| DistanceGrid::usual_spacing(&surface));
-    DistanceGrid::new(&surface, spacing).map_err(|error| format!("{}: {error}", mesh.path))
+    let make = || DistanceGrid::new(&surface, spacing);
+    let made = world.get_resource::<Cpu>().map_or_else(make, |cpu| cpu.confine(make));
+    made.map_err(|error| format!("{}: {error}", mesh.path))
 }
 
 /// The nodes that a tool may touch: of bodies that lose elements those inside, too, which may come to the surface.

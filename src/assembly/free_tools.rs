@@ -22,7 +22,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
     let mut free_tools = FreeTools { all: Vec::new(), reference: reference(&corners) };
     let mut motions = FreeMotions::default();
     // what is wrong with shapes is told with those of guided tools
-    let geometries = geometries(assembly.scene, &mut Diagnostics::default());
+    let geometries = geometries(assembly.scene, world, &mut Diagnostics::default());
     let gravity = gravity(assembly, world);
     for (name, tool) in &scene.tools {
         let (Some(free), Some(geometry)) = (&tool.free, geometries.get(name)) else { continue };

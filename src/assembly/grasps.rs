@@ -18,7 +18,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
     // what is wrong with tools that touch, too, has been said
     let mut said = Diagnostics::default();
     let touches = scene.contacts.iter().any(|contact| matches!(contact, Contact::Tool { .. }));
-    let geometries = geometries(assembly.scene, if touches { &mut said } else { &mut *diagnostics });
+    let geometries = geometries(assembly.scene, world, if touches { &mut said } else { &mut *diagnostics });
     for (name, body) in &assembly.bodies {
         let mut marks: BTreeMap<u32, u32> = BTreeMap::new();
         let mut grasps = Vec::new();

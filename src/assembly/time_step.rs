@@ -147,7 +147,7 @@ pub fn alike_in_any_precision(world: &World, entity: Entity) -> Vec<(f64, f64)> 
         let volume = short(rest_volume(block, row, shape));
         if volume > 0.0 { (damped(frequency(row), beta), density * volume) } else { (0.0, 0.0) }
     };
-    (0..block.count).into_par_iter().map(of_row).collect()
+    world.resource::<Cpu>().confine(|| (0..block.count).into_par_iter().map(of_row).collect())
 }
 
 /// An element, by how quick it is.

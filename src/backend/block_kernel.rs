@@ -6,12 +6,13 @@ use super::cpu::BlockLaw;
 use super::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
 use super::law_kernel::{ElasticPart, ExponentialFamily, family_directions, prerequisites};
 use super::patch_lists::{BATCH_GROUPS, PLACE_BITS, PackedPatches, PatchLists, patch_batches};
+use super::user_law;
 use crate::components::{
     self, Column, Connectivity, Displacement, FamilyDirection, FibreDirection, Label, NodalVolumeChange, ViscousMemory,
 };
 use crate::elements::{Element, PressureFrom};
 use crate::elements::{node_count, with_element, with_element_of};
-use crate::materials::{Fibres, J_FLOOR, PronyTerm};
+use crate::materials::{ElasticLaw, Fibres, J_FLOOR, PronyTerm};
 use crate::math::LANES;
 use crate::mesh::{ElementKind, each_element_kind};
 use crate::shader;
@@ -165,11 +166,14 @@ impl BlockKernels {
             .fragment(shader!("inverse_cbrt"))
             .fragment(shader!("kinematics"))
             .fragment(shader!("point"))
-            .fragment(element_shader(self.block.kind))
-            .fragment(elastic.fragment);
+            .fragment(element_shader(self.block.kind));
+        kernel.fragments.extend(elastic.fragment);
         kernel.fragments.extend(prerequisites(&self.law.elastic));
         kernel.layouts.extend(elastic.layout.map(|layout| ("elastic".into(), layout)));
-        kernel
+        match &self.law.elastic {
+            ElasticLaw::UserLaw(law) => user_law::with_law(kernel, law.parts()),
+            _ => kernel,
+        }
     }
 
     /// A kernel that knows the block's layout only; a thread for each element.

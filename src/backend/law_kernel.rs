@@ -51,7 +51,8 @@ pub(super) fn family_directions(families: &[(ExponentialFibre<f32>, FamilyDirect
 
 /// An elastic law's WGSL twin, its parameters, and how they are laid out.
 pub(super) struct ElasticPart {
-    pub fragment: Fragment,
+    /// None of a law of the user's own, which is a unit.
+    pub fragment: Option<Fragment>,
     /// Empty for a law without parameters.
     pub bytes: Vec<u8>,
     /// None where the bytes were laid out by reflection.
@@ -64,12 +65,12 @@ macro_rules! elastic_parts {
             pub fn of(law: &ElasticLaw<f32>) -> Self {
                 match law {
                     $(ElasticLaw::$law(law) => Self {
-                        fragment: shader!($word),
+                        fragment: Some(shader!($word)),
                         bytes: law.bytes(),
                         layout: Some(<materials::$law<f32> as Uniform>::LAYOUT),
                     },)*
                     ElasticLaw::UserLaw(law) => Self {
-                        fragment: Fragment::new(law.parts().path.as_str(), law.parts().text.as_str()),
+                        fragment: None,
                         bytes: law.parts().uniform.clone(),
                         layout: None,
                     },
@@ -81,14 +82,7 @@ macro_rules! elastic_parts {
         pub(super) fn prerequisites(law: &ElasticLaw<f32>) -> Vec<Fragment> {
             let files = match law {
                 $(ElasticLaw::$law(_) => <materials::$law<f64> as Law>::PREREQUISITES,)*
-                // may call what all others call
-                ElasticLaw::UserLaw(_) => &[
-                    Prerequisite::FiniteStrain,
-                    Prerequisite::VolumeRatio,
-                    Prerequisite::Eigen,
-                    Prerequisite::Elementary,
-                    Prerequisite::Invariants,
-                ],
+                ElasticLaw::UserLaw(_) => &[Prerequisite::FiniteStrain, Prerequisite::VolumeRatio],
             };
             files.iter().copied().map(fragment).collect()
         }

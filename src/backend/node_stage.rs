@@ -5,7 +5,7 @@ mod frames;
 mod pass;
 
 use super::Buffers;
-use super::kernel::{BufferId, Fragment, Kernel, Layout, Uniform, uniform};
+use super::kernel::{BufferId, Fragment, Kernel, Layout, Link, Uniform, uniform};
 use super::step::{step_fragments, step_record};
 use crate::components::{Column, Displacement, ElementForce, Mass};
 use crate::shader;
@@ -47,8 +47,8 @@ pub struct NodeStage {
 /// A function that a stage calls and that somebody else has written, who may name things as the stage does.
 #[derive(Clone, Debug)]
 struct Called {
-    /// What it is called by the stage, which declares it with an empty body.
-    function: &'static str,
+    /// What it is called by the stage, which declares it with a body that stands for it.
+    function: Cow<'static, str>,
     /// What it is called by who has written it.
     name: Cow<'static, str>,
     own: Vec<Fragment>,
@@ -114,13 +114,21 @@ impl NodeStage {
     /// The kernel of a block's patches, but for its frame: forces that others in the same kernel can go on with.
     pub(crate) fn of_patch(kernel: Kernel, body: Entity, world: &World) -> Self {
         let (step, frame) = (step_fragments(world), shader!("patch_pass"));
+        let calls = kernel.links.iter().flat_map(|Link { function, calls }| {
+            calls.iter().map(|(unit, name)| Called {
+                function: function.clone(),
+                name: name.clone(),
+                own: kernel.units[unit.0].own.clone(),
+            })
+        });
+        let calls = calls.collect();
         let not_declared_by_all = |fragment: &Fragment| *fragment != frame && !step.contains(fragment);
         let own: Vec<Fragment> = kernel.fragments.into_iter().filter(not_declared_by_all).collect();
         let column = |name: &str| [Displacement::NAME, ElementForce::NAME].into_iter().find(|column| *column == name);
         let columns = kernel.bindings.iter().filter_map(|(name, buffer)| Some((column(name)?, *buffer))).collect();
         let bindings = kernel.bindings.iter().filter(|(name, _)| column(name).is_none()).cloned().collect();
         let stage = Self::new("element_forces", "sum_patch", body, rows_of(body, world), frame).with_step(world);
-        Self { rows: Rows::Patch, own, columns, bindings, layouts: kernel.layouts, ..stage }
+        Self { rows: Rows::Patch, own, calls, columns, bindings, layouts: kernel.layouts, ..stage }
     }
 
     /// The same for some of the body's nodes, one after the other; `None` where there is nothing to do for them.
@@ -166,7 +174,7 @@ impl NodeStage {
     /// Calls a function of somebody else's: the stage declares `function` with an empty body, and `own` the function
     /// `name`, which takes and gives the same. They do not see each other's names.
     pub fn calling(mut self, function: &'static str, name: impl Into<Cow<'static, str>>, own: Vec<Fragment>) -> Self {
-        self.calls.push(Called { function, name: name.into(), own });
+        self.calls.push(Called { function: function.into(), name: name.into(), own });
         self
     }
 

@@ -104,6 +104,15 @@ impl Simulation {
         Ok(authoring.node_rows.iter().map(|&row| rest.0[row as usize]).collect())
     }
 
+    /// Where a body's nodes are now (m), in the author's order: at rest, and moved by their displacements.
+    ///
+    /// # Errors
+    /// No such body; what the GPU says.
+    pub fn positions(&mut self, body: &str) -> Result<Vec<DVec3>, Error> {
+        let (rest, displacements) = (self.rest_positions(body)?, self.displacements(body)?);
+        Ok(rest.into_iter().zip(displacements).map(|(rest, displacement)| rest + displacement).collect())
+    }
+
     /// All fields of a body at the present step, in the author's order.
     ///
     /// # Errors

@@ -8,7 +8,7 @@ use super::options::{BackendChoice, Chosen, choose};
 use super::plan::{Over, Pass, Plan, Planned, each_once};
 use super::prepare::{Prepared, add_loads, counts, prepare};
 use super::schedule::Scheduled;
-use super::scheme::{fit_workgroups, sum_forces};
+use super::scheme::{fit_workgroups, sum_forces, summed};
 use super::solver::Solver;
 use super::step_kernels::step_kernels;
 use super::{Facts, Job, Options, ScheduledPass, Simulation};
@@ -101,6 +101,7 @@ impl Simulation {
                 Err(error) => return Err(error),
             },
         };
+        plan.summed = summed(&mut world);
         let on_gpu = kernels.is_some();
         let backend = match gpu_name.filter(|_| on_gpu) {
             Some(name) => format!("GPU ({name})"),

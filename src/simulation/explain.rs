@@ -13,7 +13,7 @@ use super::plan::{Pass, Plan, Planned};
 use crate::backend::dispatch::Dispatched;
 use crate::components::Precision;
 use crate::error::Error;
-use crate::systems::{Registry, Repeat, RowSet, System};
+use crate::systems::{OnHost, Registry, Repeat, RowSet, System};
 use buffers::{Sizes, host_columns};
 use kernels::OnGpu;
 use serde::Serialize;
@@ -93,6 +93,8 @@ pub struct SystemInUse {
     pub kernels: usize,
     /// For which nodes it is, where it works node by node.
     pub rows: Option<RowSet>,
+    /// How it sums the forces of elements, where it finds them.
+    pub sums: Option<String>,
     /// What of it a step repeats.
     pub repeat: Option<Repeat>,
     /// Systems that share its pass.
@@ -339,6 +341,7 @@ fn in_pass(plan: &Plan, pass: &Pass, place: usize, system: &System, on_gpu: bool
         does: system.does.clone(),
         because: planned.because.clone(),
         rows: planned.rows,
+        sums: matches!(system.host, OnHost::Elements(_)).then(|| plan.summed.to_string()),
         repeat: pass.repeat.clone(),
         shares_with: others.map(|&other| plan.systems[other].name.clone()).collect(),
         on: if on_device { "device" } else { "host" },

@@ -3,10 +3,12 @@
 //!
 //! A force f(u, v) on a node is that of a spring and a damper to the first order, K = −∂f/∂u and C = −∂f/∂v. Central
 //! differences take v from the middle of the step before, so the recursion M (u⁺ − 2u + u⁻)/Δt² + C (u − u⁻)/Δt + K u =
-//! 0 is stable while Δt² xᵀKx/4 + Δt xᵀCx/2 ≤ xᵀMx. With κ and γ the largest |K|/m and |C|/m of all nodes, whose norms
-//! are those of Frobenius, and ω² the largest of the bodies, that is so up to
+//! 0 is stable while Δt² xᵀKx/4 + Δt xᵀCx/2 ≤ xᵀMx. With κ and γ the largest Σ |K|/m and Σ |C|/m of all nodes, sums
+//! over the forces on a node with norms of Frobenius, and ω² the largest of the bodies, that is so up to
 //!
-//! Δt = 2/(γ/2 + √(γ²/4 + ω² + κ)).
+//! Δt = 2/(γ/2 + √(γ²/4 + ω² + κ)),
+//!
+//! for xᵀKx ≤ Σ over nodes of (Σ |K|/m) m |x|² ≤ κ xᵀMx, and C likewise. Forces at different nodes do not add up.
 //!
 //! Of loads that a scene has in WGSL they are differences at nodes at rest, at some times, with the curve at 1. What
 //! pushes only later, or harder elsewhere, is not seen: where it may be stiff, the scene's own `step` or `safety` is
@@ -18,11 +20,11 @@ use crate::backend::device::bring_to_host;
 use crate::components::{Column, Mass};
 use crate::error::Error;
 use crate::scene::schema::WhenUnstable;
-use crate::systems::{ForceSlopes, SlopesOf, System};
+use crate::systems::{ForceSlopes, NodeSlopes, SlopesOf, System};
 use bevy_ecs::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// The slopes of the forces of all systems together: the largest of each.
+/// The slopes of the forces of all systems: the largest that come together at a node, each of the two by itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct LoadRates(ForceSlopes);
 
@@ -37,11 +39,11 @@ impl LoadRates {
 
     /// The same of what tells them.
     fn sum(all: impl Iterator<Item = SlopesOf>, duration: f64, world: &mut World) -> Result<Self, Error> {
-        let mut sum = ForceSlopes::default();
+        let mut nodes = NodeSlopes::default();
         for slopes in all {
-            sum = sum.and(slopes(duration, world)?);
+            slopes(duration, world, &mut nodes)?;
         }
-        Ok(Self(sum))
+        Ok(Self(nodes.largest()))
     }
 
     /// Whether they are numbers that steps can be found from.

@@ -5,6 +5,7 @@
 mod grouping;
 
 use super::schedule::Scheduled;
+use super::scheme::Summed;
 use crate::backend::dispatch::Dispatched;
 use crate::backend::kernel::Kernel;
 use crate::components::{ColumnAccess, Touched};
@@ -23,6 +24,8 @@ pub(super) struct Plan {
     /// first at once, and where a step is nothing else that changes anything; else what is in the way.
     elements_then_nodes: Result<[usize; 2], String>,
     nothing_else: Result<[usize; 2], String>,
+    /// How the forces of elements are summed, body by body.
+    pub summed: Summed,
     /// How the GPU that runs it takes each body through it; `None` where none does.
     pub dispatched: Option<Vec<Dispatched>>,
 }
@@ -124,6 +127,7 @@ impl Plan {
             nothing_else: gpu.nothing_but_elements_then_nodes(&on_gpu),
             on_cpu,
             on_gpu,
+            summed: Summed::default(),
             dispatched: None,
         }
     }

@@ -31,6 +31,9 @@ pub(super) fn prepare<'a>(
     world: &mut World,
     diagnostics: &mut Diagnostics,
 ) -> Option<Prepared<'a>> {
+    // what is shared among threads before elements are counted: distances of tools that are files
+    let many = if scene.scene.tools.values().any(|tool| tool.mesh.is_some()) { usize::MAX } else { 0 };
+    world.insert_resource(Cpu::new(options.threads, many, options.instructions));
     let assembly = assemble(scene, options.precision, options.scheme, known.laws(), world, diagnostics);
     known.check(diagnostics);
     check_names(scene.scene.schedule.as_deref().unwrap_or_default(), known, diagnostics);

@@ -17,7 +17,6 @@ const ABOUT: &[(&str, &str, &[&str])] = &[
     ("systems/nodal_volume.rs", "the system of this element's nodal means", &["Tet4NodalPressure"]),
     ("src/simulation/explain/effects.rs", "what turns that system on", &["Tet4NodalPressure"]),
     ("src/backend/block_kernel.rs", "the stage that reads these means", &["tet4_nodal_pressure"]),
-    ("src/backend/user_law/names.rs", "names of that stage, which laws may not have", &["tet4_nodal_pressure"]),
     (
         "src/scene/schema/body.rs",
         "what files with cells of these kinds become where nothing is said",

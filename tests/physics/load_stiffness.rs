@@ -136,6 +136,50 @@ fn an_input_that_makes_a_load_stiffer_makes_the_step_smaller() {
     }
 }
 
+/// What two loads in WGSL that are `[one, other]` as stiff leave of the step, each on some nodes.
+fn step_under([one, other]: [f64; 2], on: [&str; 2], elements: &str) -> f64 {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, stiffness) in [("one", one), ("other", other)] {
+        let text = format!(
+            "fn {name}(node: Node) -> vec3f {{ return vec3f(-{stiffness:e} * node.mass * node.displacement.x, 0, 0); }}"
+        );
+        std::fs::write(folder.path().join(format!("{name}.wgsl")), text).unwrap();
+    }
+    let scene = format!(
+        r#"(duration: 1, bodies: {{"b": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3), elements: {elements}), material: "m")}},
+        materials: {{"m": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.3))}},
+        systems: {{"one": (file: "one.wgsl", on: {}), "other": (file: "other.wgsl", on: {})}}, integration: (bound: Elements))"#,
+        on[0], on[1]
+    );
+    let mut simulation = Simulation::new(
+        &scene_of(&scene, folder.path()),
+        &Options { backend: BackendChoice::Cpu, ..Options::default() },
+    )
+    .unwrap();
+    simulation.summary("").unwrap().stability.stable_step
+}
+
+/// 1/Δt² is (ω² + κ)/4, with κ summed over the loads of one node, and the largest of all nodes.
+#[test]
+fn loads_at_different_nodes_do_not_make_the_step_smaller_together() {
+    let [left, right] = ["Plane(normal: (1, 0, 0), at: 0)", "Plane(normal: (1, 0, 0), at: 0.1)"];
+    for elements in ["Hex8", "Tet4"] {
+        let square = |stiffness: [f64; 2], on: [&str; 2]| step_under(stiffness, on, elements).powi(-2);
+        let bodies = square([0.0; 2], [left, right]);
+        let [one, other] = [6.0 * bodies, 10.0 * bodies];
+        let apart = square([one, other], [left, right]);
+        near("of the stiffer one alone", apart, bodies + 0.25 * other, bodies, 1e-4);
+        assert_eq!(apart, square([0.0, other], [left, right]));
+        near(
+            "of both at the same nodes",
+            square([one, other], [left, left]),
+            bodies + 0.25 * (one + other),
+            bodies,
+            1e-4,
+        );
+    }
+}
+
 #[test]
 fn an_input_that_makes_a_load_too_stiff_is_refused_where_the_step_stays() {
     let (folder, scene) = scene_in_wgsl("integration: (when_unstable: Watch)");

@@ -7,6 +7,7 @@ use glam::DVec3;
 use sinew::backend::device::{Device, bring_to_host, send_to_device};
 use sinew::components::{
     Column, DisplacementIncrement, ExternalForce, InternalForce, InternalWork, Mass, Patches, Precision, RemovalStep,
+    Scheme,
 };
 use sinew::systems::{Phase, Registry, System};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
@@ -140,6 +141,19 @@ fn shares(text: &str, registry: &Registry, one: &str, other: &str) -> bool {
     let all = who_shares(text, registry);
     let (_, with) = all.iter().find(|(name, _)| name == one).unwrap();
     with.iter().any(|name| name == other)
+}
+
+/// The plan says how the forces of each body are summed, and its system alone.
+#[test]
+fn how_forces_are_summed_is_told() {
+    let scene = SceneFile::from_text("pass.ron", &scene("", "", true), Path::new("."), &[]).unwrap();
+    for (scheme, word) in [(Scheme::Patches, "patch by patch"), (Scheme::TwoPass, "in two passes")] {
+        let options = Options { backend: BackendChoice::Cpu, scheme, ..Options::default() };
+        let explained = Simulation::new(&scene, &options).unwrap().explain(&Registry::default()).unwrap();
+        let told = explained.systems.iter().filter_map(|system| Some((system.name.as_str(), system.sums.as_ref()?)));
+        let told: Vec<_> = told.collect();
+        assert!(matches!(&told[..], [("element_forces", sums)] if sums.contains(word)), "{told:?}");
+    }
 }
 
 /// Boundary waits for the nodes to move, unless somebody in between looks at the steps it writes.

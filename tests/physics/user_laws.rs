@@ -115,6 +115,35 @@ loads: [Gravity(acceleration: (0, 0, -200))])"#
     )
 }
 
+/// A law's text with names that kernels have: of a struct, of functions of elements, of what is generated.
+#[test]
+fn a_law_may_call_things_as_kernels_call_theirs() {
+    let text = include_str!("../../shaders/neo_hookean.wgsl");
+    let whole = "return elastic.bulk * theta;";
+    assert!(text.contains(whole) && text.contains("NeoHookean"));
+    let text = text.replace("NeoHookean", "Block").replace(whole, "return place(elastic.bulk) * theta;")
+        + "\nconst NODES: f32 = 1.0;\nfn place(x: f32) -> f32 { return isochoric_stress(x); }\n\
+           fn isochoric_stress(block: f32) -> f32 { return NODES * block; }\n";
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("own.wgsl"), text).unwrap();
+    let built_in = "neo_hookean: Moduli(shear: 1034.4828, bulk: 1e4)";
+    let own = r#"law: (file: "own.wgsl", parameters: {"shear": 1034.4828, "bulk": 1e4})"#;
+    for elements in ["Tet4", "Hex8MeanDilatation"] {
+        for configuration in configurations() {
+            let [expected, found] = [built_in, own].map(|law| {
+                let mut run = configuration.start_in(&scene(law, elements), folder.path());
+                run.advance_to(0.02).unwrap();
+                run.displacements("bar").unwrap()
+            });
+            let largest = expected.iter().fold(0.0, |largest: f64, u| largest.max(u.length()));
+            let error = found.iter().zip(&expected).fold(0.0, |worst: f64, (a, b)| worst.max((*a - *b).length()));
+            assert!(largest > 1e-3, "the bar falls by {largest} m only");
+            let bound = if configuration.name.starts_with("GPU") { 0.0 } else { configuration.bound(1e-10, 2e-5) };
+            near(&format!("{elements} on {}", configuration.name), error / largest, 0.0, 1.0, bound);
+        }
+    }
+}
+
 /// On every backend and element a whole run under our own WGSL as a user's law goes as under the Rust law; on the GPU,
 /// where the text is the same, to the bit.
 #[test]

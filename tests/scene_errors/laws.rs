@@ -91,11 +91,8 @@ fn what_is_not_written_as_a_law_is_told_at_its_line() {
             "return 1.0; }\nfn minor(x: f32) -> f32 { return x;",
             "own.wgsl:15:4: error: `minor` is a name of sinew's own (shaders/tensor.wgsl) | choose another name",
         ),
-        (
-            "return elastic.bulk * change;",
-            "return elastic.bulk * change; }\nfn place() -> f32 { return 0.0;",
-            "own.wgsl:15:4: error: `place` is a name of sinew's own (shaders/block.wgsl) | choose another name",
-        ),
+        // kernels have a function of this name, which a law does not meet
+        ("return elastic.bulk * change;", "return elastic.bulk * change; }\nfn place() -> f32 { return 0.0;", ""),
         (
             "fn elastic_pressure(change: f32)",
             "fn elastic_presure(change: f32)",

@@ -117,8 +117,7 @@ impl BodyShape {
 
 /// Where a body's nodes are (m), in the author's order.
 fn positions(simulation: &mut Simulation, body: &str) -> Result<Vec<Vec3>, Error> {
-    let (rest, moved) = (simulation.rest_positions(body)?, simulation.displacements(body)?);
-    Ok(rest.iter().zip(&moved).map(|(rest, moved)| (*rest + *moved).as_vec3()).collect())
+    Ok(simulation.positions(body)?.into_iter().map(|place| place.as_vec3()).collect())
 }
 
 /// Writes meshes for this frame: between the last two ticks, as far as the frame is between them.

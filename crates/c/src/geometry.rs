@@ -7,15 +7,9 @@ use glam::DVec3;
 use std::ffi::c_char;
 
 impl State {
-    /// Where nodes are now (m).
-    fn positions(&mut self, body: &str) -> Outcome<Vec<DVec3>> {
-        let (rest, moved) = (self.simulation.rest_positions(body)?, self.simulation.displacements(body)?);
-        Ok(rest.iter().zip(&moved).map(|(rest, moved)| *rest + *moved).collect())
-    }
-
     /// Normals at nodes: the mean of those of their triangles by area; 0 where a node is in none.
     fn normals(&mut self, body: &str) -> Outcome<Vec<DVec3>> {
-        let places = self.positions(body)?;
+        let places = self.simulation.positions(body)?;
         Ok(sinew::skins::normals(&places, &self.simulation.surface_triangles(body)?))
     }
 
@@ -61,7 +55,7 @@ pub unsafe extern "C" fn sinew_positions(
     // SAFETY: as the header asks of callers
     entry(|| unsafe {
         let body = text(body, "body")?;
-        fill(&numbers(&with(simulation, |state, _| state.positions(body))?), buffer, capacity, count)
+        fill(&numbers(&with(simulation, |state, _| Ok(state.simulation.positions(body)?))?), buffer, capacity, count)
     })
 }
 

@@ -72,10 +72,7 @@ impl Body {
 
     #[pyo3(signature = (out = None))]
     fn positions<'py>(&self, py: Python<'py>, out: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
-        let places: Vec<DVec3> = self.with(py, |run, name| {
-            let (rest, moved) = (run.simulation.rest_positions(name)?, run.simulation.displacements(name)?);
-            Ok(rest.into_iter().zip(moved).map(|(rest, moved)| rest + moved).collect())
-        })?;
+        let places = self.with(py, |run, name| run.simulation.positions(name))?;
         arrays::into(arrays::vectors(py, &places)?, out)
     }
 

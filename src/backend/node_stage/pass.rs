@@ -85,15 +85,16 @@ impl Pass {
             let layouts: Vec<(Cow<'static, str>, Layout)> = layouts.collect();
             pass.kernel.layouts.extend(layouts);
             let of_patch = matches!(stage.rows, Rows::Patch);
-            if of_patch && frame.has_patch {
-                pass.kernel.fragments.extend(stage.own.iter().cloned());
-                continue;
-            }
             let links = stage.calls.iter().map(|called| {
                 let unit = Unit { own: called.own.clone(), variables: variables.clone(), ..Unit::default() };
-                Link { function: called.function.into(), calls: vec![(pass.add(unit), called.name.clone())] }
+                Link { function: called.function.clone(), calls: vec![(pass.add(unit), called.name.clone())] }
             });
-            let links = links.collect();
+            let links: Vec<Link> = links.collect();
+            if of_patch && frame.has_patch {
+                pass.kernel.fragments.extend(stage.own.iter().cloned());
+                pass.kernel.links.extend(links);
+                continue;
+            }
             let common = if of_patch { &common } else { &with_forces };
             let unit = pass.add(Unit { common: common.clone(), own: stage.own.clone(), variables, links });
             let call = (unit, stage.call.clone());
@@ -108,7 +109,7 @@ impl Pass {
             finish.extend(stage.finish.map(|finish| (unit, finish.into())));
         }
         let links = [("sum_all", sums), ("call_all", calls), ("finish_all", finish)];
-        pass.kernel.links = links.map(|(function, calls)| Link { function: function.into(), calls }).into();
+        pass.kernel.links.extend(links.map(|(function, calls)| Link { function: function.into(), calls }));
         pass.kernel.fragments.extend(frame.own);
         drop(pass.kernel.bindings.splice(..0, columns));
         pass

@@ -1,6 +1,6 @@
 //! What a text of the user's own must be: a law, or a load.
 
-use super::names::{callable_fragments, law_owners, owners_among};
+use super::names::{callable_fragments, owners_among};
 use crate::backend::kernel::Fragment;
 use crate::materials::J_FLOOR;
 use crate::shader;
@@ -55,17 +55,16 @@ fn function((name, argument, result, called): (&str, &'static str, &'static str,
 impl Form {
     /// Of an elastic law.
     pub(super) fn law() -> Self {
-        let mut ours = callable_fragments();
-        ours.push(Fragment::new("generated: constants", format!("const J_FLOOR: f32 = {J_FLOOR:e};\n")));
+        let ours = callable_fragments_of_law();
         Self {
             word: "law",
             functions: OF_LAWS.into_iter().map(function).collect(),
             parameters: "elastic",
             called_by: "the element kernel calls the law's functions",
             depends_on: "a stress depends on the deformation and the parameters alone",
-            ours,
             instead: Some(function(OF_ENERGIES)),
-            owners: law_owners(),
+            owners: owners_among(&ours),
+            ours,
         }
     }
 
@@ -95,6 +94,21 @@ impl Form {
             ours,
         }
     }
+}
+
+/// The fragments of ours that a law's text may call.
+pub(super) fn callable_fragments_of_law() -> Vec<Fragment> {
+    let floor = Fragment::new("generated: constants", format!("const J_FLOOR: f32 = {J_FLOOR:e};\n"));
+    callable_fragments().into_iter().chain([floor]).collect()
+}
+
+/// The functions of a law as kernels declare them, each with a body that stands for that of the law.
+pub(super) fn stand_ins() -> Fragment {
+    let stand_in = |of: (&str, &'static str, &'static str, &str)| {
+        let Function { declared, result, .. } = function(of);
+        format!("{declared} {{\n    return {result}();\n}}\n")
+    };
+    Fragment::new("generated: what stands for a law", OF_LAWS.into_iter().map(stand_in).collect::<String>())
 }
 
 /// The fragments of ours that a load's text may call.

@@ -8,6 +8,7 @@ mod deformations;
 mod energy;
 mod form;
 mod formula;
+mod in_kernels;
 mod interface;
 mod limits;
 mod load;
@@ -19,6 +20,7 @@ mod text;
 pub use checks::LawCheck;
 pub use energy::read_formula;
 pub(crate) use form::callable_fragments_of_load;
+pub(crate) use in_kernels::with_law;
 pub use load::{check_load, read_load};
 pub use rust::NamedLaw;
 

@@ -1,9 +1,7 @@
-//! What WGSL texts declare, by name and place, and the names that a law cannot have because they are ours.
+//! What WGSL texts declare, by name and place.
 
-use crate::backend::block_kernel::element_shader;
 use crate::backend::kernel::Fragment;
 use crate::materials::program::{is_name, words};
-use crate::mesh::ElementKind;
 use crate::shader;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -70,77 +68,6 @@ pub(super) fn callable_fragments() -> Vec<Fragment> {
     ]
 }
 
-/// The other fragments that can be in one kernel with a law.
-pub(super) fn sibling_fragments() -> Vec<Fragment> {
-    let kinds = ElementKind::ALL.into_iter().map(element_shader);
-    let others = vec![
-        shader!("alive"),
-        shader!("block"),
-        shader!("criterion"),
-        shader!("element_forces"),
-        shader!("element_removal"),
-        shader!("energy"),
-        shader!("exponential_fibres"),
-        shader!("fibres"),
-        shader!("fibres_field"),
-        shader!("fibres_uniform"),
-        shader!("finite_strain"),
-        shader!("many_steps"),
-        shader!("mean_pressure"),
-        shader!("nodal_mean"),
-        shader!("nodal_volume"),
-        shader!("note_inverted"),
-        shader!("pass_rows"),
-        shader!("patch_gather"),
-        shader!("patch_pass"),
-        shader!("patch_step"),
-        shader!("patch_volume"),
-        shader!("patches"),
-        shader!("point"),
-        shader!("point_pressure"),
-        shader!("prony"),
-        shader!("remove_inverted"),
-        shader!("row"),
-        shader!("step"),
-        shader!("tet4_nodal_pressure"),
-        shader!("volume_ratio"),
-        shader!("guard_elements"),
-    ];
-    kinds.chain(others).collect()
-}
-
-/// Names that kernels are generated with.
-const GENERATED: [&str; 21] = [
-    "add_forces",
-    "force_of_patch",
-    "call_all",
-    "finish_all",
-    "sum_all",
-    "LEAST_INTERIOR",
-    "isochoric_stress",
-    "energy_density",
-    "fibres_energy_at",
-    "viscous_pressure",
-    "family_direction",
-    "FAMILIES",
-    "VOLUMETRIC_TERMS",
-    "TERMS",
-    "LANES",
-    "NODES",
-    "POINTS",
-    "CHECKED_POINTS",
-    "ROWS",
-    "VOLUME_ROW",
-    "J_FLOOR",
-];
-
-/// The names that are ours where there is a law, each with the file that has it.
-pub(super) fn law_owners() -> HashMap<String, String> {
-    let mut owners = owners_among(&[callable_fragments(), sibling_fragments()].concat());
-    owners.extend(GENERATED.map(|name| (name.to_owned(), "a generated part of the kernel".to_owned())));
-    owners
-}
-
 /// The names that fragments declare, each with its file.
 pub(super) fn owners_among(fragments: &[Fragment]) -> HashMap<String, String> {
     let mut owners = HashMap::new();
@@ -165,23 +92,5 @@ mod tests {
         let expected = [("struct", "Law"), ("var", "elastic"), ("const", "a"), ("fn", "f")];
         assert_eq!(names, expected.map(|(kind, name)| (kind, name, name)));
         assert_eq!(&text[member(text, &found[0], "mu")], "mu");
-    }
-
-    /// A shader that is in none of the lists could break a kernel with a law in it, far from the law's file.
-    #[test]
-    fn every_shader_that_can_meet_a_law_is_in_the_list() {
-        let known: Vec<String> = callable_fragments().into_iter().chain(sibling_fragments()).map(|f| f.path).collect();
-        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders");
-        for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
-            let name = format!("shaders/{}", entry.file_name().to_string_lossy());
-            let text = std::fs::read_to_string(entry.path()).unwrap_or_default();
-            let names: Vec<String> = declared(&text).into_iter().map(|d| d.name).collect();
-            let law = names.iter().any(|name| name == "elastic_isochoric");
-            // kernels of nodes and faces have no element
-            let elements =
-                ["alive", "block", "prony", "fibres", "element", "point", "nodal_v", "nodal_m", "tet4_nodal"];
-            let meets = elements.iter().any(|part| name.contains(part)) || text.contains("Kinematics");
-            assert!(law || !meets || known.contains(&name), "{name} is in no list of src/backend/user_law/names.rs");
-        }
     }
 }

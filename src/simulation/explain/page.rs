@@ -70,6 +70,9 @@ fn write_system(system: &SystemInUse, on_gpu: bool, f: &mut Formatter<'_>) -> Re
         (true, ..) => ", on the host".to_string(),
     };
     writeln!(f, "  {:16}  because: {}{place}{every}", "", system.because)?;
+    if let Some(sums) = &system.sums {
+        writeln!(f, "  {:16}  {sums}", "")?;
+    }
     if let Some(repeat) = &system.repeat {
         writeln!(f, "  {:16}  {repeat}", "")?;
     }
