@@ -5,7 +5,7 @@ use super::inputs::Tape;
 use super::interval::RunInterval;
 use super::known::Known;
 use super::options::{BackendChoice, Chosen, choose};
-use super::plan::{Over, Pass, Plan, Planned, each_once};
+use super::plan::{Over, Pass, Plan, each_once};
 use super::prepare::{Prepared, add_loads, counts, prepare};
 use super::schedule::Scheduled;
 use super::scheme::{fit_workgroups, sum_forces};
@@ -81,7 +81,7 @@ impl Simulation {
         let mut plan = Plan::of(&schedule, &access, fuse, &mut world);
         let mut solver = Solver::of(&scene.scene, options.precision, &mut world);
 
-        let Chosen { gpu, mut why } = choose(options, of_the_cpu(&scene.scene))?;
+        let Chosen { gpu, mut why } = choose(options, of_the_cpu(&scene.scene, &schedule))?;
         if gpu.is_some() {
             why += &fit_workgroups(&mut world);
         }
@@ -176,12 +176,22 @@ impl Simulation {
 }
 
 /// What of a scene runs on the CPU only, and what instead does not.
-fn of_the_cpu(scene: &Scene) -> Option<[&'static str; 2]> {
-    match (scene.is_implicit(), scene.is_static_by_newton()) {
-        (true, _) => Some(["implicit steps run on the CPU only", "`solver: Explicit`"]),
-        (_, true) => Some(["Newton's iterations run on the CPU only", "`method: Relaxation`"]),
-        _ => None,
+fn of_the_cpu(scene: &Scene, schedule: &[Scheduled<'_>]) -> Option<[String; 2]> {
+    if scene.is_static_by_newton() {
+        return Some(["Newton's iterations run on the CPU only".into(), "`method: Relaxation`".into()]);
     }
+    if !scene.is_implicit() {
+        return None;
+    }
+    let explicit = || "`solver: Explicit`".to_string();
+    let named = |entry: &Scheduled<'_>, why: &str| [format!("`{}` {why}", entry.system.name), explicit()];
+    let of_step = || schedule.iter().filter(|entry| !entry.system.observes);
+    let is_contact = |entry: &&Scheduled<'_>| entry.system.phase == Phase::Contact;
+    if let Some(contact) = of_step().find(is_contact) {
+        return Some(named(contact, "takes part in implicit steps on the CPU only"));
+    }
+    let on_host = of_step().find(|entry| !entry.on_device)?;
+    Some(named(on_host, "runs on the host, where implicit steps on a GPU do not call it"))
 }
 
 /// Takes a GPU for the run, which says in the plan how it takes bodies through it, and makes the kernels of all its
@@ -255,20 +265,19 @@ fn entries(
             Job::Host { .. } => None,
         };
         let systems = pass.systems.clone();
-        entries.push(ScheduledPass { name, phase, systems, job, before_steps, time: Duration::ZERO, runs: 0 });
+        let reads = each_once(plan.systems_of(pass).flat_map(|system| &system.reads).copied());
+        entries.push(ScheduledPass { name, phase, systems, job, reads, before_steps, time: Duration::ZERO, runs: 0 });
     }
     entries
 }
 
 fn host_job(system: HostSystem, schedule: &[Scheduled<'_>], plan: &Plan, pass: &Pass) -> Job {
     let first = &schedule[pass.systems[0]];
-    let names = |of: fn(&Planned) -> &Vec<&'static str>| each_once(plan.systems_of(pass).flat_map(of).copied());
     Job::Host {
         system,
         interval: RunInterval::new(first.every, first.interval),
         observes: first.system.observes,
-        reads: names(|system| &system.reads),
-        writes: names(|system| &system.writes),
+        writes: each_once(plan.systems_of(pass).flat_map(|system| &system.writes).copied()),
     }
 }
 

@@ -141,6 +141,8 @@ struct ScheduledPass {
     /// Places of its systems in the plan.
     systems: Vec<usize>,
     job: Job,
+    /// Names of the columns that its systems read.
+    reads: Vec<&'static str>,
     /// What it needs before steps are submitted to a GPU.
     before_steps: Option<crate::systems::BeforeSteps>,
     time: Duration,
@@ -152,7 +154,6 @@ enum Job {
         system: HostSystem,
         interval: RunInterval,
         observes: bool,
-        reads: Vec<&'static str>,
         writes: Vec<&'static str>,
     },
     Kernels(Vec<KernelId>),

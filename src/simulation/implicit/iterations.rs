@@ -4,6 +4,7 @@
 use super::super::ScheduledPass;
 use super::super::explain::SolverInUse;
 use super::axes::{Axes, Motion};
+use super::device::{OnDevice, in_words};
 use super::kept::Kept;
 use super::newton::{Newton, Settings, Workspace};
 use super::preconditioner::{Operator, Preconditioner, of_name};
@@ -11,6 +12,7 @@ use super::report::ImplicitSteps;
 use super::sums::Sums;
 use super::trial::{Trial, is_of_forces};
 use crate::backend::cpu::Cpu;
+use crate::backend::device::Device;
 use crate::components::Clock;
 use crate::scene::schema;
 use bevy_ecs::prelude::*;
@@ -25,6 +27,8 @@ pub(super) struct Iterations {
     pub kept: Kept,
     pub sums: Sums,
     pub report: ImplicitSteps,
+    /// What solves on a device, once it has.
+    pub on_device: Option<OnDevice>,
 }
 
 impl Iterations {
@@ -40,6 +44,7 @@ impl Iterations {
             kept: Kept::default(),
             sums: Sums::on(world.resource::<Cpu>()),
             report: ImplicitSteps::default(),
+            on_device: None,
         }
     }
 
@@ -53,6 +58,7 @@ impl Iterations {
             preconditioner: &mut *self.preconditioner,
             report: &mut self.report,
             sums: &self.sums,
+            on_device: &mut self.on_device,
             h,
         }
     }
@@ -101,6 +107,10 @@ impl Iterations {
             ),
             format!("conjugate gradients are preconditioned with {made_of}"),
         ];
+        let of_forces = || passes.iter().filter(|pass| is_of_forces(pass.phase)).map(|pass| pass.kernels().len());
+        if world.contains_resource::<Device>() {
+            of.push(in_words(axes, !preconditioner.coarse().is_empty(), of_forces().sum()));
+        }
         if let Some(budget) = settings.budget {
             of.push(format!("at most {budget} passes a step, and two more"));
         }

@@ -3,6 +3,7 @@
 
 mod axes;
 mod conjugate_gradients;
+mod device;
 mod differences;
 mod equation;
 mod formula;
@@ -43,6 +44,9 @@ impl Simulation {
         let Some(implicit) = self.solver.implicit_mut() else { return Ok(()) };
         implicit.step(&mut self.world, &mut self.entries)?;
         self.world.resource_mut::<Clock>().step = step + 1;
+        if self.facts.on_gpu {
+            return self.after_a_step_on_device(step);
+        }
         for entry in self.entries.iter_mut().filter(|entry| after_the_step(entry.phase)) {
             entry.run_on_host(step, &mut self.world)?;
         }

@@ -13,7 +13,6 @@ use crate::components::*;
 use crate::error::Error;
 use crate::scene::schema;
 use crate::snapshot::Keeping;
-use crate::systems::Phase;
 use bevy_ecs::prelude::*;
 use std::time::Instant;
 
@@ -104,7 +103,7 @@ impl Statics {
         let Iterations { motion, space, .. } = &mut *iterations;
         axes.read(trial.world, motion);
         trial.world.resource_mut::<Signals>().approach(relaxation.end, [1.0, 1.0]);
-        trial.run(|phase| phase == Phase::Boundary)?;
+        trial.boundary()?;
         super::step::held_axes(trial.world, axes, motion, &mut space.to_go);
         space.inertia.fill(0.0);
         space.constant.fill(0.0);

@@ -39,6 +39,18 @@ impl Cholesky {
         size_of_val(&self.lower[..]) + size_of_val(&self.per_pivot[..])
     }
 
+    /// A⁻¹, row by row.
+    pub fn inverse(&self) -> Vec<f64> {
+        let size = self.per_pivot.len();
+        let mut inverse = vec![0.0; size * size];
+        // columns are rows: it is symmetric
+        for (place, row) in inverse.chunks_exact_mut(size.max(1)).enumerate() {
+            row[place] = 1.0;
+            self.solve(row);
+        }
+        inverse
+    }
+
     /// x of A x = b, in the place of b.
     pub fn solve(&self, b: &mut [f64]) {
         let start = |row: usize| row * (row + 1) / 2;
