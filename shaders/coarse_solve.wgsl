@@ -14,12 +14,12 @@ var<workgroup> moments: array<vec3<f32>, 64>;
 var<workgroup> products: array<f32, 64>;
 
 @compute @workgroup_size(64)
-fn restrict(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
+fn restrict_residual(
+    @builtin(workgroup_id) group_id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) local: u32,
 ) {
-    let aggregate = patch_row(workgroup, groups);
+    let aggregate = patch_row(group_id, groups);
     var force = vec3<f32>(0.0);
     var moment = vec3<f32>(0.0);
     if aggregate < extent.aggregates {
@@ -51,11 +51,11 @@ fn restrict(
 
 @compute @workgroup_size(64)
 fn solve_coarse(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(workgroup_id) group_id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) local: u32,
 ) {
-    let unknown = patch_row(workgroup, groups);
+    let unknown = patch_row(group_id, groups);
     var product = 0.0;
     if unknown < extent.unknowns {
         let first = coarse_rows[3u * unknown];

@@ -1,7 +1,8 @@
 // What the kernels of conjugate gradients have in common; twin of src/simulation/implicit/device. An iteration is
-// direct, reach_along, displace, the kernels of forces, image_of, step_length, advance, then restrict and solve_coarse
-// where there is a coarse level, precondition and turn_direction. Sums are trees in workgroup memory, of 64 nodes each,
-// whose results one workgroup adds: in a fixed order, without atomics. RUNNING and what follows is generated.
+// direct, reach_along, displace, the kernels of forces, image_of, step_length, advance, then restrict_residual and
+// solve_coarse where there is a coarse level, precondition and turn_direction. Sums are trees in workgroup memory, of
+// 64 nodes each, whose results one workgroup adds: in a fixed order, without atomics. RUNNING and what follows is
+// generated.
 struct Solve {
     product: f32, // r·z
     length: f32, // α: how far x goes along p

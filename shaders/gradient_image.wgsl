@@ -36,17 +36,17 @@ fn displace(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroup
 @compute @workgroup_size(64)
 fn image_of(
     @builtin(global_invocation_id) id: vec3<u32>,
-    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(workgroup_id) group_id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) local: u32,
 ) {
     let node = row(id, groups);
     var product = 0.0;
     if node < part.nodes {
-        let external = external_force_of(node);
+        let load = external_force_of(node);
         for (var axis = 0u; axis < 3u; axis++) {
             let at = 3u * (part.first + node) + axis;
-            let force = internal_force[3u * node + axis] - external[axis];
+            let force = internal_force[3u * node + axis] - load[axis];
             var q = 0.0;
             if inertia[at] >= 0.0 {
                 q = inertia[at] * direction[at];
@@ -66,7 +66,7 @@ fn image_of(
         }
         workgroupBarrier();
     }
-    let group = patch_row(workgroup, groups);
+    let group = patch_row(group_id, groups);
     if local == 0u && group < part.groups {
         partials[part.first_group + group] = vec2<f32>(products[0], 0.0);
     }

@@ -12,7 +12,7 @@ var<workgroup> sizes: array<f32, 64>;
 @compute @workgroup_size(64)
 fn direct(
     @builtin(global_invocation_id) id: vec3<u32>,
-    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(workgroup_id) group_id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) local: u32,
 ) {
@@ -38,7 +38,7 @@ fn direct(
         }
         workgroupBarrier();
     }
-    let group = patch_row(workgroup, groups);
+    let group = patch_row(group_id, groups);
     if local == 0u && group < extent.groups {
         partials[group] = vec2<f32>(sizes[0], 0.0);
     }

@@ -11,7 +11,7 @@ var<workgroup> sums: array<vec2<f32>, 64>;
 @compute @workgroup_size(64)
 fn precondition(
     @builtin(global_invocation_id) id: vec3<u32>,
-    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(workgroup_id) group_id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) local: u32,
 ) {
@@ -42,7 +42,7 @@ fn precondition(
         }
         workgroupBarrier();
     }
-    let group = patch_row(workgroup, groups);
+    let group = patch_row(group_id, groups);
     if local == 0u && group < extent.groups {
         partials[group] = sums[0];
     }

@@ -207,11 +207,7 @@ pub fn overwrite_on_device(world: &mut World, written: impl Fn(Entity, &'static 
     send(world, &[Truth::Both, Truth::Host, Truth::Device], written)
 }
 
-fn send(
-    world: &mut World,
-    truths: &[Truth],
-    written: impl Fn(Entity, &'static str) -> bool,
-) -> Result<(), Error> {
+fn send(world: &mut World, truths: &[Truth], written: impl Fn(Entity, &'static str) -> bool) -> Result<(), Error> {
     let Some(mut device) = world.remove_resource::<Device>() else { return Ok(()) };
     let started = std::time::Instant::now();
     for &truth in truths {

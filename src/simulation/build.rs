@@ -81,7 +81,7 @@ impl Simulation {
         let mut plan = Plan::of(&schedule, &access, fuse, &mut world);
         let mut solver = Solver::of(&scene.scene, options.precision, &mut world);
 
-        let Chosen { gpu, mut why } = choose(options, of_the_cpu(&scene.scene, &schedule))?;
+        let Chosen { gpu, mut why } = chosen(&scene.scene, &schedule, options)?;
         if gpu.is_some() {
             why += &fit_workgroups(&mut world);
         }
@@ -175,23 +175,29 @@ impl Simulation {
     }
 }
 
-/// What of a scene runs on the CPU only, and what instead does not.
+/// What of a scene's step keeps its solver on the CPU, and what instead does not.
 fn of_the_cpu(scene: &Scene, schedule: &[Scheduled<'_>]) -> Option<[String; 2]> {
-    if scene.is_static_by_newton() {
-        return Some(["Newton's iterations run on the CPU only".into(), "`method: Relaxation`".into()]);
-    }
-    if !scene.is_implicit() {
-        return None;
-    }
-    let explicit = || "`solver: Explicit`".to_string();
-    let named = |entry: &Scheduled<'_>, why: &str| [format!("`{}` {why}", entry.system.name), explicit()];
+    let (who, instead) = match (scene.is_implicit(), scene.is_static_by_newton()) {
+        (true, _) => ("implicit steps", "`solver: Explicit`"),
+        (_, true) => ("Newton's iterations", "`method: Relaxation`"),
+        _ => return None,
+    };
+    let told = |entry: &Scheduled<'_>, why: &str| [format!("`{}` {why}", entry.system.name), instead.to_string()];
     let of_step = || schedule.iter().filter(|entry| !entry.system.observes);
-    let is_contact = |entry: &&Scheduled<'_>| entry.system.phase == Phase::Contact;
-    if let Some(contact) = of_step().find(is_contact) {
-        return Some(named(contact, "takes part in implicit steps on the CPU only"));
+    if let Some(contact) = of_step().find(|entry| entry.system.phase == Phase::Contact) {
+        return Some(told(contact, &format!("takes part in {who} on the CPU only")));
     }
     let on_host = of_step().find(|entry| !entry.on_device)?;
-    Some(named(on_host, "runs on the host, where implicit steps on a GPU do not call it"))
+    Some(told(on_host, &format!("runs on the host, where {who} on a GPU do not call it")))
+}
+
+/// The GPU to run on, if any.
+fn chosen(scene: &Scene, schedule: &[Scheduled<'_>], options: &Options) -> Result<Chosen, Error> {
+    let solves = scene.is_implicit() || scene.is_static_by_newton();
+    if solves && options.backend == BackendChoice::Auto {
+        return Ok(Chosen { gpu: None, why: "what solves for its steps takes a GPU where one is asked for".into() });
+    }
+    choose(options, of_the_cpu(scene, schedule))
 }
 
 /// Takes a GPU for the run, which says in the plan how it takes bodies through it, and makes the kernels of all its

@@ -150,12 +150,7 @@ struct ScheduledPass {
 }
 
 enum Job {
-    Host {
-        system: HostSystem,
-        interval: RunInterval,
-        observes: bool,
-        writes: Vec<&'static str>,
-    },
+    Host { system: HostSystem, interval: RunInterval, observes: bool, writes: Vec<&'static str> },
     Kernels(Vec<KernelId>),
 }
 

@@ -172,7 +172,7 @@ const ENDED: usize = 6;
 fn precondition(vectors: &Vectors, coarse: Option<&CoarseBuffers>, extent: &Extent, room: Room) -> Vec<Kernel> {
     let of_coarse = coarse.map(|coarse| {
         let unknowns = room.aggregates * super::preconditioner::RIGID;
-        [vectors.coarse("restrict", room.aggregates, coarse), vectors.coarse("solve_coarse", unknowns, coarse)]
+        [vectors.coarse("restrict_residual", room.aggregates, coarse), vectors.coarse("solve_coarse", unknowns, coarse)]
     });
     let fine = [vectors.precondition(extent.nodes as usize, coarse), vectors.scalars("turn_direction")];
     of_coarse.into_iter().flatten().chain(fine).collect()

@@ -12,11 +12,13 @@ use super::report::ImplicitSteps;
 use super::sums::Sums;
 use super::trial::{Trial, is_of_forces};
 use crate::backend::cpu::Cpu;
-use crate::backend::device::Device;
 use crate::components::Clock;
 use crate::scene::schema;
 use bevy_ecs::prelude::*;
 use std::time::Instant;
+
+/// The passes of a step, and how many dispatches its forces are on a GPU where that is asked about.
+pub(in crate::simulation) type OfForces<'a> = (&'a [ScheduledPass], Option<usize>);
 
 /// Everything of a solver but its axes, which trials look at meanwhile.
 pub(super) struct Iterations {
@@ -78,7 +80,8 @@ impl Iterations {
 
     /// What it does in words after `first`, and what it holds at the present state, for `explain`. The first step
     /// begins with the same.
-    pub fn in_use(&mut self, first: String, axes: &Axes, world: &mut World, passes: &[ScheduledPass]) -> SolverInUse {
+    pub fn in_use(&mut self, first: String, axes: &Axes, world: &mut World, passes: OfForces<'_>) -> SolverInUse {
+        let (passes, on_gpu) = passes;
         let h = world.resource::<Clock>().time_step;
         let Self { settings, motion, space, preconditioner, kept, .. } = self;
         axes.read(world, motion);
@@ -107,9 +110,8 @@ impl Iterations {
             ),
             format!("conjugate gradients are preconditioned with {made_of}"),
         ];
-        let of_forces = || passes.iter().filter(|pass| is_of_forces(pass.phase)).map(|pass| pass.kernels().len());
-        if world.contains_resource::<Device>() {
-            of.push(in_words(axes, !preconditioner.coarse().is_empty(), of_forces().sum()));
+        if let Some(kernels) = on_gpu {
+            of.push(in_words(axes, !preconditioner.coarse().is_empty(), kernels));
         }
         if let Some(budget) = settings.budget {
             of.push(format!("at most {budget} passes a step, and two more"));

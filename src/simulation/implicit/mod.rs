@@ -20,9 +20,11 @@ mod trial;
 mod unsupported;
 mod work;
 
+pub(super) use iterations::OfForces;
 pub use report::ImplicitSteps;
 pub(super) use statics::{Attempt, Rest, Statics};
 pub(super) use step::Implicit;
+pub(super) use trial::is_of_forces;
 pub(super) use unsupported::{check, check_moves};
 
 use super::Simulation;

@@ -5,7 +5,7 @@ use super::super::explain::SolverInUse;
 use super::axes::{Axes, Motion};
 use super::device::{bring_state, send_state};
 use super::formula::Formula;
-use super::iterations::Iterations;
+use super::iterations::{Iterations, OfForces};
 use super::kept::Kept;
 use super::newton::{Found, Lost, Settings, Workspace};
 use super::report::ImplicitSteps;
@@ -49,7 +49,7 @@ impl Implicit {
     }
 
     /// What it is made of.
-    pub fn in_use(&mut self, scheme: ImplicitScheme, world: &mut World, passes: &[ScheduledPass]) -> SolverInUse {
+    pub fn in_use(&mut self, scheme: ImplicitScheme, world: &mut World, passes: OfForces<'_>) -> SolverInUse {
         let Settings { newton, tolerance, .. } = self.iterations.settings;
         let scheme = match scheme {
             ImplicitScheme::Euler => "implicit Euler".into(),

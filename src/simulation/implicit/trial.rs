@@ -130,6 +130,6 @@ impl Trial<'_> {
 }
 
 /// Whether a phase finds forces.
-pub(super) fn is_of_forces(phase: Phase) -> bool {
+pub(in crate::simulation) fn is_of_forces(phase: Phase) -> bool {
     phase > Phase::Boundary && phase < Phase::Integrate
 }

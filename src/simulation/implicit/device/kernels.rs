@@ -170,10 +170,7 @@ impl Vectors {
             let none = "fn coarse_motion_of(node: u32) -> vec3<f32> {\n    return vec3<f32>(0.0);\n}\n";
             return kernel.fragment(Fragment::new("generated: no coarse level", none));
         };
-        coarse
-            .of(kernel)
-            .fragment(shader!("coarse_motion"))
-            .bind("coarse_motions", coarse.coarse_motions)
+        coarse.of(kernel).fragment(shader!("coarse_motion")).bind("coarse_motions", coarse.coarse_motions)
     }
 
     /// What the coarse level does, a workgroup an aggregate or an unknown.

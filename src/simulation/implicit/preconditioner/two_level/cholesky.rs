@@ -98,7 +98,13 @@ mod tests {
             let x: Vec<f64> = (0..size).map(|i| (i as f64 * 0.9).cos()).collect();
             let b: Vec<f64> = (0..size).map(|i| (0..size).map(|j| entry(i, j) * x[j]).sum()).collect();
             let mut found = b.clone();
-            Cholesky::of(lower, size).solve(&mut found);
+            let factor = Cholesky::of(lower, size);
+            factor.solve(&mut found);
+            let inverse = factor.inverse();
+            for (row, x) in inverse.chunks_exact(size).zip(&found) {
+                let (by_inverse, scale) = (dot(row, &b), row.iter().zip(&b).map(|(a, b)| (a * b).abs()).sum::<f64>());
+                assert!((by_inverse - x).abs() <= 1e-9 * (scale + x.abs()), "{lacking}: {by_inverse}, not {x}");
+            }
             assert!(lacking == 0 || found[20] == 0.0);
             for i in 0..size {
                 let again: f64 = (0..size).map(|j| entry(i, j) * found[j]).sum();
