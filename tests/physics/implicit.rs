@@ -15,11 +15,7 @@ pub fn options(precision: Precision, threads: usize) -> Options {
 }
 
 fn start(scene: &str) -> Simulation {
-    start_on(scene, &options(Precision::F64, 1))
-}
-
-fn start_on(scene: &str, options: &Options) -> Simulation {
-    Simulation::new(&scene_of(scene, Path::new(".")), options).unwrap()
+    Simulation::new(&scene_of(scene, Path::new(".")), &options(Precision::F64, 1)).unwrap()
 }
 
 /// A single cell whose top can move along z only, at 1 m/s: one degree of freedom four times over.
@@ -37,7 +33,7 @@ pub fn oscillator_on(solver: &str, damping: &str, options: &Options) -> Simulati
             Fixed(on: Plane(normal: (0, 0, 1), at: 0.1), axes: [X, Y])],
         output: (energies_every: 1000))"
     );
-    start_on(&scene, options)
+    Simulation::new(&scene_of(&scene, Path::new(".")), options).unwrap()
 }
 
 /// ω² = K/m of it: E A/l over a half of its mass, as a quarter of each belongs to a node.
