@@ -182,13 +182,17 @@ fn of_the_cpu(scene: &Scene, schedule: &[Scheduled<'_>]) -> Option<[String; 2]> 
         (_, true) => ("Newton's iterations", "`method: Relaxation`"),
         _ => return None,
     };
-    let told = |entry: &Scheduled<'_>, why: &str| [format!("`{}` {why}", entry.system.name), instead.to_string()];
-    let of_step = || schedule.iter().filter(|entry| !entry.system.observes);
-    if let Some(contact) = of_step().find(|entry| entry.system.phase == Phase::Contact) {
-        return Some(told(contact, &format!("takes part in {who} on the CPU only")));
+    let told = |what: &str, why: &str| [format!("`{what}` {why}"), instead.to_string()];
+    let lists = [
+        ("contacts", scene.contacts.is_empty()),
+        ("attachments", scene.attachments.is_empty()),
+        ("suction", scene.suction.is_empty()),
+    ];
+    if let Some((list, _)) = lists.into_iter().find(|(_, is_empty)| !is_empty) {
+        return Some(told(list, &format!("take part in {who} on the CPU only")));
     }
-    let on_host = of_step().find(|entry| !entry.on_device)?;
-    Some(told(on_host, &format!("runs on the host, where {who} on a GPU do not call it")))
+    let on_host = schedule.iter().find(|entry| !entry.on_device && !entry.system.observes)?;
+    Some(told(&on_host.system.name, &format!("runs on the host, where {who} on a GPU do not call it")))
 }
 
 /// The GPU to run on, if any.
