@@ -22,7 +22,7 @@ fn set_memory_vector(at: u32, v: vec3<f32>) {
     viscous_memory[at + 2u * LANES] = v.z;
 }
 
-// S_iso − Υ (Pa); the memory is carried on by a step.
+// S_iso − Υ (Pa); the memory is carried on by a step, but where forces are only tried.
 fn relaxed(element: u32, point: u32, isochoric: Sym3) -> Sym3 {
     var stress = isochoric;
     for (var number = 0u; number < TERMS; number++) {
@@ -32,8 +32,10 @@ fn relaxed(element: u32, point: u32, isochoric: Sym3) -> Sym3 {
         let overstress = sym_plus(sym_scaled(isochoric, term.stress), sym_scaled(memory, term.memory));
         stress = sym_plus(stress, sym_scaled(overstress, -1.0));
         let change = sym_scaled(sym_plus(sym_scaled(isochoric, term.aim), sym_scaled(memory, -1.0)), term.rate);
-        set_memory_vector(at, memory.diagonal + change.diagonal);
-        set_memory_vector(at + 3u * LANES, memory.others + change.others);
+        if step.trying == 0u {
+            set_memory_vector(at, memory.diagonal + change.diagonal);
+            set_memory_vector(at + 3u * LANES, memory.others + change.others);
+        }
     }
     return stress;
 }
@@ -46,7 +48,7 @@ fn relaxed_pressure(element: u32, point: u32, instant: f32) -> f32 {
         let at = place(element, MEMORY, 6u * TERMS * POINTS + number);
         let memory = viscous_memory[at];
         pressure -= term.stress * instant + term.memory * memory;
-        if point + 1u == POINTS {
+        if point + 1u == POINTS && step.trying == 0u {
             viscous_memory[at] = memory + term.rate * (term.aim * instant - memory);
         }
     }

@@ -2,6 +2,8 @@
 @group(0) @binding(0) var<storage, read_write> removal_step: array<u32>;
 
 fn is_removed_inverted(element: u32) -> bool {
-    removal_step[element] = min(removal_step[element], max(step.number, step.number + 1u));
+    if step.trying == 0u {
+        removal_step[element] = min(removal_step[element], max(step.number, step.number + 1u));
+    }
     return true;
 }

@@ -10,7 +10,7 @@ struct Step {
     relaxation: f32, // a = cΔt/2 of a static analysis
     work_factor: f32, // share of a step's work that is counted: the time between the middles over Δt
     observed: u32, // 1 in steps after which somebody may look at forces
-    reserved: u32,
+    trying: u32, // 1 where forces are only tried, which leave histories as they are
     time: f32, // at the beginning of the step (s)
     time_step: f32, // Δt (s)
     signals: array<vec4<f32>, SIGNALS>,

@@ -196,9 +196,21 @@ pub fn bring_to_host(world: &mut World, wanted: impl Fn(Entity, &'static str) ->
 /// # Errors
 /// What the GPU says.
 pub fn send_to_device(world: &mut World, written: impl Fn(Entity, &'static str) -> bool) -> Result<(), Error> {
+    send(world, &[Truth::Both, Truth::Host], written)
+}
+
+/// The same, whatever kernels have made of these columns meanwhile.
+///
+/// # Errors
+/// What the GPU says.
+pub fn overwrite_on_device(world: &mut World, written: impl Fn(Entity, &'static str) -> bool) -> Result<(), Error> {
+    send(world, &[Truth::Both, Truth::Host, Truth::Device], written)
+}
+
+fn send(world: &mut World, truths: &[Truth], written: impl Fn(Entity, &'static str) -> bool) -> Result<(), Error> {
     let Some(mut device) = world.remove_resource::<Device>() else { return Ok(()) };
     let started = std::time::Instant::now();
-    for truth in [Truth::Both, Truth::Host] {
+    for &truth in truths {
         for key in device.keys_of(truth, |key, _| written(key.0, key.1)) {
             if let Err(error) = device.upload(world, key) {
                 world.insert_resource(device);

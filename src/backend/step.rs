@@ -27,8 +27,8 @@ pub struct Step {
     pub work_factor: f32,
     /// 1 in steps after which somebody may look at forces, else 0: kernels need not leave them in memory.
     pub observed: u32,
-    /// Unused: slots for signals begin at a multiple of 16 bytes.
-    pub reserved: u32,
+    /// 1 where forces are only tried, which leave histories as they are; else 0.
+    pub trying: u32,
     /// Time at the beginning of the step (s).
     pub time: f32,
     /// Δt (s).
@@ -45,7 +45,7 @@ uniform!(Step {
     relaxation,
     work_factor,
     observed,
-    reserved,
+    trying,
     time,
     time_step
 });
@@ -66,7 +66,7 @@ impl Step {
             relaxation: damping as f32,
             work_factor: (between / dt) as f32,
             observed: 1,
-            reserved: 0,
+            trying: 0,
             time: clock.time() as f32,
             time_step: dt as f32,
         }
@@ -86,12 +86,24 @@ fn slots(signals: &Signals) -> usize {
 /// One step's record for the device; the signals must have been evaluated for the step. `observed`: whether somebody
 /// may look at forces after it.
 pub fn record(clock: &Clock, signals: &Signals, observed: bool) -> Vec<u8> {
-    let mut bytes = Step { observed: observed.into(), ..Step::of(clock) }.bytes();
+    with_signals(Step { observed: observed.into(), ..Step::of(clock) }, signals)
+}
+
+fn with_signals(step: Step, signals: &Signals) -> Vec<u8> {
+    let mut bytes = step.bytes();
     for slot in signals.values() {
         bytes.extend_from_slice(bytemuck::bytes_of(&slot.map(|value| value as f32)));
     }
     bytes.resize(record_size(signals), 0);
     bytes
+}
+
+/// That of forces at the end of an implicit step, where the clock stands: what they note is of the step that ends.
+/// `trying`: whether nothing of them is kept.
+pub fn trial_record(clock: &Clock, signals: &Signals, trying: bool) -> Vec<u8> {
+    let ending = Clock { step: clock.step.saturating_sub(1), ..*clock };
+    let step = Step { number: step_number(&ending), trying: trying.into(), ..Step::of(clock) };
+    with_signals(step, signals)
 }
 
 /// Bytes of a record.

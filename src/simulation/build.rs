@@ -5,7 +5,7 @@ use super::inputs::Tape;
 use super::interval::RunInterval;
 use super::known::Known;
 use super::options::{BackendChoice, Chosen, choose};
-use super::plan::{Over, Pass, Plan, Planned, each_once};
+use super::plan::{Over, Pass, Plan, each_once};
 use super::prepare::{Prepared, add_loads, counts, prepare};
 use super::schedule::Scheduled;
 use super::scheme::{fit_workgroups, sum_forces, summed};
@@ -81,7 +81,7 @@ impl Simulation {
         let mut plan = Plan::of(&schedule, &access, fuse, &mut world);
         let mut solver = Solver::of(&scene.scene, options.precision, &mut world);
 
-        let Chosen { gpu, mut why } = choose(options, of_the_cpu(&scene.scene))?;
+        let Chosen { gpu, mut why } = chosen(&scene.scene, &schedule, options)?;
         if gpu.is_some() {
             why += &fit_workgroups(&mut world);
         }
@@ -176,13 +176,33 @@ impl Simulation {
     }
 }
 
-/// What of a scene runs on the CPU only, and what instead does not.
-fn of_the_cpu(scene: &Scene) -> Option<[&'static str; 2]> {
-    match (scene.is_implicit(), scene.is_static_by_newton()) {
-        (true, _) => Some(["implicit steps run on the CPU only", "`solver: Explicit`"]),
-        (_, true) => Some(["Newton's iterations run on the CPU only", "`method: Relaxation`"]),
-        _ => None,
+/// What of a scene's step keeps its solver on the CPU, and what instead does not.
+fn of_the_cpu(scene: &Scene, schedule: &[Scheduled<'_>]) -> Option<[String; 2]> {
+    let (who, instead) = match (scene.is_implicit(), scene.is_static_by_newton()) {
+        (true, _) => ("implicit steps", "`solver: Explicit`"),
+        (_, true) => ("Newton's iterations", "`method: Relaxation`"),
+        _ => return None,
+    };
+    let told = |what: &str, why: &str| [format!("`{what}` {why}"), instead.to_string()];
+    let lists = [
+        ("contacts", scene.contacts.is_empty()),
+        ("attachments", scene.attachments.is_empty()),
+        ("suction", scene.suction.is_empty()),
+    ];
+    if let Some((list, _)) = lists.into_iter().find(|(_, is_empty)| !is_empty) {
+        return Some(told(list, &format!("take part in {who} on the CPU only")));
     }
+    let on_host = schedule.iter().find(|entry| !entry.on_device && !entry.system.observes)?;
+    Some(told(&on_host.system.name, &format!("runs on the host, where {who} on a GPU do not call it")))
+}
+
+/// The GPU to run on, if any.
+fn chosen(scene: &Scene, schedule: &[Scheduled<'_>], options: &Options) -> Result<Chosen, Error> {
+    let solves = scene.is_implicit() || scene.is_static_by_newton();
+    if solves && options.backend == BackendChoice::Auto {
+        return Ok(Chosen { gpu: None, why: "what solves for its steps takes a GPU where one is asked for".into() });
+    }
+    choose(options, of_the_cpu(scene, schedule))
 }
 
 /// Takes a GPU for the run, which says in the plan how it takes bodies through it, and makes the kernels of all its
@@ -256,20 +276,19 @@ fn entries(
             Job::Host { .. } => None,
         };
         let systems = pass.systems.clone();
-        entries.push(ScheduledPass { name, phase, systems, job, before_steps, time: Duration::ZERO, runs: 0 });
+        let reads = each_once(plan.systems_of(pass).flat_map(|system| &system.reads).copied());
+        entries.push(ScheduledPass { name, phase, systems, job, reads, before_steps, time: Duration::ZERO, runs: 0 });
     }
     entries
 }
 
 fn host_job(system: HostSystem, schedule: &[Scheduled<'_>], plan: &Plan, pass: &Pass) -> Job {
     let first = &schedule[pass.systems[0]];
-    let names = |of: fn(&Planned) -> &Vec<&'static str>| each_once(plan.systems_of(pass).flat_map(of).copied());
     Job::Host {
         system,
         interval: RunInterval::new(first.every, first.interval),
         observes: first.system.observes,
-        reads: names(|system| &system.reads),
-        writes: names(|system| &system.writes),
+        writes: each_once(plan.systems_of(pass).flat_map(|system| &system.writes).copied()),
     }
 }
 

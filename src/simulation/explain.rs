@@ -280,6 +280,12 @@ impl Simulation {
             true => kernels::describe(plan, &scheduled, &sizes, &mut self.world)?,
             false => Default::default(),
         };
+        let of_forces = |kernel: &&KernelInUse| {
+            let first = kernel.system.split(" + ").next();
+            let planned = plan.systems.iter().find(|planned| Some(planned.name.as_str()) == first);
+            planned.is_some_and(|planned| is_of_forces(planned.phase))
+        };
+        let forces_on_gpu = on_gpu.then(|| kernels.iter().filter(of_forces).map(|kernel| kernel.times).sum());
         for system in &mut systems {
             let own = kernels.iter().filter(|kernel| kernel.system.split(" + ").any(|name| name == system.name));
             system.kernels = own.count();
@@ -309,7 +315,7 @@ impl Simulation {
             parts: effects::parts(&self.scene, self.facts.precision, on_gpu, &mut self.world),
             kernels,
             dispatched,
-            solver: self.solver.in_use(&self.scene, &mut self.world, &self.entries),
+            solver: self.solver.in_use(&self.scene, &mut self.world, (&self.entries, forces_on_gpu)),
             contacts: contact::in_use(&mut self.world),
             columns,
             buffers,

@@ -141,6 +141,8 @@ struct ScheduledPass {
     /// Places of its systems in the plan.
     systems: Vec<usize>,
     job: Job,
+    /// Names of the columns that its systems read.
+    reads: Vec<&'static str>,
     /// What it needs before steps are submitted to a GPU.
     before_steps: Option<crate::systems::BeforeSteps>,
     time: Duration,
@@ -148,13 +150,7 @@ struct ScheduledPass {
 }
 
 enum Job {
-    Host {
-        system: HostSystem,
-        interval: RunInterval,
-        observes: bool,
-        reads: Vec<&'static str>,
-        writes: Vec<&'static str>,
-    },
+    Host { system: HostSystem, interval: RunInterval, observes: bool, writes: Vec<&'static str> },
     Kernels(Vec<KernelId>),
 }
 

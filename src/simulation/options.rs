@@ -47,13 +47,13 @@ pub(super) struct Chosen {
 }
 
 /// Chooses the backend; of some things there is one only, and others instead.
-pub(super) fn choose(options: &Options, of_the_cpu: Option<[&str; 2]>) -> Result<Chosen, Error> {
+pub(super) fn choose(options: &Options, of_the_cpu: Option<[String; 2]>) -> Result<Chosen, Error> {
     let cpu = |why: String| Ok(Chosen { gpu: None, why });
     match (options.backend, of_the_cpu) {
         (BackendChoice::Gpu, Some([what, instead])) => {
             return Err(Error::Options(format!("{what}: use --backend cpu, or {instead}")));
         }
-        (BackendChoice::Auto, Some([what, _])) => return cpu(what.into()),
+        (BackendChoice::Auto, Some([what, _])) => return cpu(what),
         _ => {}
     }
     let open = |choice: &Choice| {

@@ -9,7 +9,7 @@ use super::ScheduledPass;
 use super::Simulation;
 use super::explain::SolverInUse;
 use super::frequency::largest_eigenvalue;
-use super::implicit::{Attempt, ImplicitSteps, Rest, Statics};
+use super::implicit::{Attempt, ImplicitSteps, OfForces, Rest, Statics};
 use super::residual::{Motion, Residual, State};
 use super::stretch::least_stretch;
 use crate::backend::device::{bring_to_host, send_to_device};
@@ -161,7 +161,7 @@ impl Relaxing {
     }
 
     /// What Newton's iterations are made of, where they are tried.
-    pub fn in_use(&mut self, world: &mut World, passes: &[ScheduledPass]) -> Option<SolverInUse> {
+    pub fn in_use(&mut self, world: &mut World, passes: OfForces<'_>) -> Option<SolverInUse> {
         self.newton.as_mut().map(|newton| newton.statics.in_use(world, passes))
     }
 

@@ -159,8 +159,8 @@ impl Simulation {
     /// One step on the host, or as many as can be submitted together.
     pub(super) fn some_steps(&mut self, target: u64) -> Result<(), Error> {
         match self.facts.on_gpu {
+            _ if self.solver.implicit().is_some() => self.implicit_step(),
             true => self.device_steps(target),
-            false if self.solver.implicit().is_some() => self.implicit_step(),
             false => self.host_step(target),
         }
     }
@@ -276,8 +276,8 @@ impl Simulation {
                 Job::Kernels(kernels) => waiting.extend(kernels),
                 Job::Host { observes: true, .. } => {}
                 Job::Host { interval, .. } if !interval.is_due(step) => {}
-                Job::Host { reads, writes, .. } => {
-                    let (reads, writes) = (reads.clone(), writes.clone());
+                Job::Host { writes, .. } => {
+                    let (reads, writes) = (entry.reads.clone(), writes.clone());
                     self.run_kernels(&std::mem::take(&mut waiting), step, 1)?;
                     bring_to_host(&mut self.world, |_, name| reads.contains(&name) || writes.contains(&name))?;
                     self.world.resource_mut::<Clock>().step = step + u64::from(after);
@@ -290,6 +290,14 @@ impl Simulation {
         }
         self.run_kernels(&waiting, step, 1)?;
         self.world.resource_mut::<Clock>().step = step + 1;
+        self.observe_if_due(step + 1)
+    }
+
+    /// What comes after an implicit step: kernels of that step, and who observes.
+    pub(super) fn after_a_step_on_device(&mut self, step: u64) -> Result<(), Error> {
+        let after = self.entries.iter().filter(|entry| after_the_step(entry.phase));
+        let kernels: Vec<KernelId> = after.flat_map(ScheduledPass::kernels).copied().collect();
+        self.run_kernels(&kernels, step, 1)?;
         self.observe_if_due(step + 1)
     }
 
@@ -314,16 +322,16 @@ impl Simulation {
 }
 
 impl ScheduledPass {
-    fn kernels(&self) -> &[KernelId] {
+    pub(super) fn kernels(&self) -> &[KernelId] {
         match &self.job {
             Job::Kernels(kernels) => kernels,
             Job::Host { .. } => &[],
         }
     }
 
-    /// Whether a host system reads a column.
+    /// Whether one of its systems reads a column.
     pub(super) fn reads(&self, name: &str) -> bool {
-        matches!(&self.job, Job::Host { reads, .. } if reads.contains(&name))
+        self.reads.contains(&name)
     }
 
     /// Runs a host system if this is one of its steps.

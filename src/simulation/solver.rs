@@ -5,7 +5,7 @@
 
 use super::explain::SolverInUse;
 use super::follow::Follower;
-use super::implicit::Implicit;
+use super::implicit::{Implicit, OfForces};
 use super::relax::Relaxing;
 use super::stable_step::Stability;
 use super::{ScheduledPass, Simulation};
@@ -100,7 +100,7 @@ impl Solver {
     }
 
     /// What it is made of, where it solves equations.
-    pub fn in_use(&mut self, scene: &Scene, world: &mut World, passes: &[ScheduledPass]) -> Option<SolverInUse> {
+    pub fn in_use(&mut self, scene: &Scene, world: &mut World, passes: OfForces<'_>) -> Option<SolverInUse> {
         match (self, &scene.solver) {
             (Self::Implicit(implicit), schema::Solver::Implicit { scheme, .. }) => {
                 Some(implicit.in_use(*scheme, world, passes))

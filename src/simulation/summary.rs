@@ -259,11 +259,11 @@ fn system_time(entry: &super::ScheduledPass, plan: &super::plan::Plan, on_gpu: b
             let none = Vec::new;
             SystemTime { name, because, on: "device", seconds: None, runs: None, brought: none(), sent: none() }
         }
-        Job::Host { reads, writes, observes, .. } => {
+        Job::Host { writes, observes, .. } => {
             // what observes may see everything, and fetches for itself what is due
             let travels = on_gpu && !observes;
             let travelling = |columns: &Vec<&'static str>| if travels { columns.clone() } else { Vec::new() };
-            let (brought, sent) = (travelling(reads), travelling(writes));
+            let (brought, sent) = (travelling(&entry.reads), travelling(writes));
             let seconds = Some(entry.time.as_secs_f64());
             SystemTime { name, because, on: "host", seconds, runs: Some(entry.runs), brought, sent }
         }

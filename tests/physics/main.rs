@@ -30,6 +30,7 @@ mod held_nodes;
 mod history;
 mod hourglass;
 mod implicit;
+mod implicit_device;
 mod implicit_forms;
 mod implicit_lens;
 mod inputs;

@@ -5,7 +5,7 @@ use crate::configurations::{near, scene_of};
 use crate::implicit::options;
 use glam::DVec3;
 use sinew::components::Precision;
-use sinew::{BackendChoice, Error, Options, Simulation};
+use sinew::{Error, Options, Simulation};
 use std::path::Path;
 
 fn start(scene: &str, precision: Precision) -> Simulation {
@@ -224,8 +224,4 @@ fn what_newton_cannot_do_is_refused_by_name() {
         let told = refused(more);
         assert!(told.contains(expected), "{more}: {told}");
     }
-    let gpu = Options { backend: BackendChoice::Gpu, ..Options::default() };
-    let scene = scene_of(&scene("analysis: Static(method: Newton)"), Path::new("."));
-    let told = Simulation::new(&scene, &gpu).err().unwrap().to_string();
-    assert!(told.contains("Newton's iterations run on the CPU only"), "{told}");
 }

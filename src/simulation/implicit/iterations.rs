@@ -4,6 +4,7 @@
 use super::super::ScheduledPass;
 use super::super::explain::SolverInUse;
 use super::axes::{Axes, Motion};
+use super::device::{OnDevice, in_words};
 use super::kept::Kept;
 use super::newton::{Newton, Settings, Workspace};
 use super::preconditioner::{Operator, Preconditioner, of_name};
@@ -16,6 +17,9 @@ use crate::scene::schema;
 use bevy_ecs::prelude::*;
 use std::time::Instant;
 
+/// The passes of a step, and how many dispatches its forces are on a GPU where that is asked about.
+pub(in crate::simulation) type OfForces<'a> = (&'a [ScheduledPass], Option<usize>);
+
 /// Everything of a solver but its axes, which trials look at meanwhile.
 pub(super) struct Iterations {
     pub settings: Settings,
@@ -25,6 +29,8 @@ pub(super) struct Iterations {
     pub kept: Kept,
     pub sums: Sums,
     pub report: ImplicitSteps,
+    /// What solves on a device, once it has.
+    pub on_device: Option<OnDevice>,
 }
 
 impl Iterations {
@@ -40,6 +46,7 @@ impl Iterations {
             kept: Kept::default(),
             sums: Sums::on(world.resource::<Cpu>()),
             report: ImplicitSteps::default(),
+            on_device: None,
         }
     }
 
@@ -53,6 +60,7 @@ impl Iterations {
             preconditioner: &mut *self.preconditioner,
             report: &mut self.report,
             sums: &self.sums,
+            on_device: &mut self.on_device,
             h,
         }
     }
@@ -72,7 +80,8 @@ impl Iterations {
 
     /// What it does in words after `first`, and what it holds at the present state, for `explain`. The first step
     /// begins with the same.
-    pub fn in_use(&mut self, first: String, axes: &Axes, world: &mut World, passes: &[ScheduledPass]) -> SolverInUse {
+    pub fn in_use(&mut self, first: String, axes: &Axes, world: &mut World, passes: OfForces<'_>) -> SolverInUse {
+        let (passes, on_gpu) = passes;
         let h = world.resource::<Clock>().time_step;
         let Self { settings, motion, space, preconditioner, kept, .. } = self;
         axes.read(world, motion);
@@ -101,6 +110,9 @@ impl Iterations {
             ),
             format!("conjugate gradients are preconditioned with {made_of}"),
         ];
+        if let Some(kernels) = on_gpu {
+            of.push(in_words(axes, !preconditioner.coarse().is_empty(), kernels));
+        }
         if let Some(budget) = settings.budget {
             of.push(format!("at most {budget} passes a step, and two more"));
         }

@@ -3,6 +3,7 @@
 
 mod axes;
 mod conjugate_gradients;
+mod device;
 mod differences;
 mod equation;
 mod formula;
@@ -19,9 +20,11 @@ mod trial;
 mod unsupported;
 mod work;
 
+pub(super) use iterations::OfForces;
 pub use report::ImplicitSteps;
 pub(super) use statics::{Attempt, Rest, Statics};
 pub(super) use step::Implicit;
+pub(super) use trial::is_of_forces;
 pub(super) use unsupported::{check, check_moves};
 
 use super::Simulation;
@@ -43,6 +46,9 @@ impl Simulation {
         let Some(implicit) = self.solver.implicit_mut() else { return Ok(()) };
         implicit.step(&mut self.world, &mut self.entries)?;
         self.world.resource_mut::<Clock>().step = step + 1;
+        if self.facts.on_gpu {
+            return self.after_a_step_on_device(step);
+        }
         for entry in self.entries.iter_mut().filter(|entry| after_the_step(entry.phase)) {
             entry.run_on_host(step, &mut self.world)?;
         }

@@ -3,6 +3,7 @@
 
 use super::axes::Motion;
 use super::conjugate_gradients::{Ended, Solved, Stop, Vectors, solve};
+use super::device::{self, LinearSystem, OnDevice};
 use super::differences::{difference, steps_to};
 use super::formula::Formula;
 use super::preconditioner::{Operator, Preconditioner};
@@ -124,6 +125,7 @@ pub(super) struct Newton<'a, 'w> {
     pub preconditioner: &'a mut dyn Preconditioner,
     pub report: &'a mut ImplicitSteps,
     pub sums: &'a Sums,
+    pub on_device: &'a mut Option<OnDevice>,
     /// The length of the step (s); 1 in statics, where nothing has a velocity.
     pub h: f64,
 }
@@ -305,10 +307,25 @@ impl Newton<'_, '_> {
 
     fn conjugate_gradients(&mut self, tolerance: f64) -> Result<Solved, Error> {
         self.follow();
-        let Self { trial, settings, motion, space, preconditioner, report, sums, h } = self;
+        let Self { trial, settings, motion, space, preconditioner, report, sums, on_device, h } = self;
         let most = settings.budget.map_or(MOST_PRODUCTS, |budget| budget.saturating_sub(trial.count + 1).max(1));
         let Workspace { inertia, w, net, elsewhere, steps, right, p, vectors, .. } = &mut **space;
         let of_step = (&settings.formula, *h, *motion);
+        if trial.is_on_device() {
+            let system = LinearSystem {
+                steps: steps_to(&settings.formula, *h, motion, w, steps, trial),
+                right,
+                w,
+                net,
+                inertia,
+                free: &motion.free,
+                formula: &settings.formula,
+                preconditioner: &**preconditioner,
+            };
+            let solved = device::solve(on_device, trial, &system, sums, p, Stop { tolerance, most })?;
+            report.linear_iterations += solved.iterations;
+            return Ok(solved);
+        }
         let times = |x: &[f64], image: &mut [f64]| -> Result<(), Error> {
             difference(trial, of_step, (w, net), elsewhere, steps, x, image)?;
             for (axis, image) in image.iter_mut().enumerate() {

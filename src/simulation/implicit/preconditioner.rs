@@ -8,7 +8,9 @@ use crate::scene::schema;
 use bevy_ecs::prelude::*;
 use block_jacobi::BlockJacobi;
 pub(super) use columns::pieces;
+use glam::{DMat3, DVec3};
 use two_level::TwoLevel;
+pub(super) use two_level::{Coarse, RIGID};
 
 /// The operator A = D + c K of a linear solve, D diagonal (mass and damping), K the tangent stiffness of all bodies.
 /// Its rows are all axes of all nodes, bodies one after the other.
@@ -36,6 +38,23 @@ pub(in crate::simulation) trait Preconditioner: Send + Sync {
     /// how long the step is. What changes little may stay as it was.
     fn follow(&mut self, _: &Operator<'_>) {}
 
+    /// What of it works on a node by itself, as it follows the operator now (m/N): symmetric.
+    fn block(&self, node: usize) -> DMat3;
+
+    /// The coarse levels that are added to that; their matrices are others where [`made`](Self::made) is another.
+    fn coarse(&self) -> Vec<&Coarse> {
+        Vec::new()
+    }
+
+    /// How often matrices of coarse levels have been made.
+    fn made(&self) -> u64 {
+        0
+    }
+
+    /// Moves bodies as a whole in a solution x (m) of a system with that right-hand side (N), which blocks and coarse
+    /// levels alone have found: so that it keeps the momentum that [`apply`](Self::apply) keeps.
+    fn settle(&self, _right: &[f64], _x: &mut [f64]) {}
+
     /// What it is made of, in words, once it follows an operator; and the bytes that it holds.
     fn holds(&self) -> (String, Vec<(&'static str, u64)>);
 }
@@ -46,6 +65,10 @@ pub(in crate::simulation) struct Identity;
 impl Preconditioner for Identity {
     fn apply(&mut self, residual: &[f64], z: &mut [f64]) {
         z.copy_from_slice(residual);
+    }
+
+    fn block(&self, _: usize) -> DMat3 {
+        DMat3::IDENTITY
     }
 
     fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
@@ -70,6 +93,10 @@ impl Preconditioner for Mass {
         let inverse = |(&inertia, &free): (&f64, &bool)| if free && inertia > 0.0 { 1.0 / inertia } else { 0.0 };
         self.per_inertia.clear();
         self.per_inertia.extend(operator.inertia.iter().zip(operator.free).map(inverse));
+    }
+
+    fn block(&self, node: usize) -> DMat3 {
+        DMat3::from_diagonal(DVec3::from_slice(&self.per_inertia[3 * node..]))
     }
 
     fn holds(&self) -> (String, Vec<(&'static str, u64)>) {

@@ -3,9 +3,10 @@
 use super::super::ScheduledPass;
 use super::super::explain::SolverInUse;
 use super::axes::Axes;
+use super::device::{bring_state, send_state};
 use super::formula::Formula;
 use super::free_motions::{FreeMotion, free_motions};
-use super::iterations::Iterations;
+use super::iterations::{Iterations, OfForces};
 use super::newton::{Found, Lost, Newton, Settings, Workspace};
 use super::report::ImplicitSteps;
 use super::trial::Trial;
@@ -13,7 +14,6 @@ use crate::components::*;
 use crate::error::Error;
 use crate::scene::schema;
 use crate::snapshot::Keeping;
-use crate::systems::Phase;
 use bevy_ecs::prelude::*;
 use std::time::Instant;
 
@@ -64,7 +64,7 @@ impl Statics {
     }
 
     /// What it is made of.
-    pub fn in_use(&mut self, world: &mut World, passes: &[ScheduledPass]) -> SolverInUse {
+    pub fn in_use(&mut self, world: &mut World, passes: OfForces<'_>) -> SolverInUse {
         let Settings { newton, tolerance, .. } = self.iterations.settings;
         let first = format!(
             "rest by at most {newton} Newton iterations, to a residual of {tolerance}; pseudo-steps where they do not arrive"
@@ -80,6 +80,7 @@ impl Statics {
     /// Seeks equilibrium under loads and motions in full, from where bodies are.
     pub fn attempt(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<Attempt, Error> {
         let started = Instant::now();
+        bring_state(world)?;
         self.iterations.kept.keep(world);
         world.insert_resource(TrialForces { trying: true, ..TrialForces::default() });
         let before = self.iterations.report.newton_iterations;
@@ -88,6 +89,7 @@ impl Statics {
         if !matches!(found, Ok(Attempt::Found(_))) {
             self.iterations.kept.put_back(world, |_| true);
         }
+        send_state(world)?;
         self.iterations.end_step(started);
         match found {
             Ok(attempt) => Ok(attempt),
@@ -104,7 +106,7 @@ impl Statics {
         let Iterations { motion, space, .. } = &mut *iterations;
         axes.read(trial.world, motion);
         trial.world.resource_mut::<Signals>().approach(relaxation.end, [1.0, 1.0]);
-        trial.run(|phase| phase == Phase::Boundary)?;
+        trial.boundary()?;
         super::step::held_axes(trial.world, axes, motion, &mut space.to_go);
         space.inertia.fill(0.0);
         space.constant.fill(0.0);

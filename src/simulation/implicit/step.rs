@@ -3,8 +3,9 @@
 use super::super::ScheduledPass;
 use super::super::explain::SolverInUse;
 use super::axes::{Axes, Motion};
+use super::device::{bring_state, send_state};
 use super::formula::Formula;
-use super::iterations::Iterations;
+use super::iterations::{Iterations, OfForces};
 use super::kept::Kept;
 use super::newton::{Found, Lost, Settings, Workspace};
 use super::report::ImplicitSteps;
@@ -14,7 +15,6 @@ use crate::components::*;
 use crate::error::{Criterion, Error};
 use crate::observation::Observer;
 use crate::scene::schema::{ImplicitScheme, Inversion, Scene, Solver};
-use crate::systems::Phase;
 use bevy_ecs::prelude::*;
 use std::time::Instant;
 
@@ -49,7 +49,7 @@ impl Implicit {
     }
 
     /// What it is made of.
-    pub fn in_use(&mut self, scheme: ImplicitScheme, world: &mut World, passes: &[ScheduledPass]) -> SolverInUse {
+    pub fn in_use(&mut self, scheme: ImplicitScheme, world: &mut World, passes: OfForces<'_>) -> SolverInUse {
         let Settings { newton, tolerance, .. } = self.iterations.settings;
         let scheme = match scheme {
             ImplicitScheme::Euler => "implicit Euler".into(),
@@ -69,6 +69,7 @@ impl Implicit {
     pub fn step(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<(), Error> {
         let started = Instant::now();
         let clock = *world.resource::<Clock>();
+        bring_state(world)?;
         self.iterations.kept.keep(world);
         let found = self.find(world, passes, &clock);
         world.resource_mut::<Clock>().step = clock.step;
@@ -76,6 +77,7 @@ impl Implicit {
         if found.is_err() {
             self.iterations.kept.put_back(world, |_| true);
         }
+        send_state(world)?;
         let left = found.map_err(|lost| match lost {
             Lost::Error(error) => error,
             Lost::Because(what) => not_found(world, what),
@@ -99,7 +101,7 @@ impl Implicit {
         }
         let times = [clock.time_at(clock.step), clock.time_at(clock.step + 1)];
         trial.world.resource_mut::<Signals>().evaluate((times[1], times[1]), times);
-        trial.run(|phase| phase == Phase::Boundary)?;
+        trial.boundary()?;
         if let Some(works) = works {
             works.begin(trial.world, axes);
         }

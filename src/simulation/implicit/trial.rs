@@ -9,7 +9,7 @@ use bevy_ecs::prelude::*;
 
 /// How far products displace elements, as a share of their height at each node, in f32 and in f64: so that neither the
 /// curvature of laws nor rounding counts.
-const STRAIN: [f64; 2] = [1e-3, 1e-7];
+pub(super) const STRAIN: [f64; 2] = [1e-3, 1e-7];
 
 /// The forces of a step, tried.
 pub(super) struct Trial<'a> {
@@ -37,11 +37,19 @@ pub(super) struct Tried {
 
 impl Trial<'_> {
     /// Runs the systems of some phases.
-    pub fn run(&mut self, phases: impl Fn(Phase) -> bool) -> Result<(), Error> {
+    fn run(&mut self, phases: impl Fn(Phase) -> bool) -> Result<(), Error> {
         for pass in self.passes.iter_mut().filter(|pass| phases(pass.phase)) {
             pass.run_on_host(self.step, self.world)?;
         }
         Ok(())
+    }
+
+    /// Says where held axes go.
+    pub fn boundary(&mut self) -> Result<(), Error> {
+        match self.is_on_device() {
+            true => self.boundary_on_device(),
+            false => self.run(|phase| phase == Phase::Boundary),
+        }
     }
 
     /// Whether loads look at how fast nodes move: in statics nothing does.
@@ -66,7 +74,10 @@ impl Trial<'_> {
         if let Some(mut trial) = self.world.get_resource_mut::<TrialForces>() {
             trial.inverted = false;
         }
-        self.run(is_of_forces)?;
+        match self.is_on_device() {
+            true => self.forces_on_device(steps.is_some())?,
+            false => self.run(is_of_forces)?,
+        }
         self.net(net);
         Ok(!self.world.get_resource::<TrialForces>().is_some_and(|trial| trial.inverted))
     }
@@ -119,6 +130,6 @@ impl Trial<'_> {
 }
 
 /// Whether a phase finds forces.
-pub(super) fn is_of_forces(phase: Phase) -> bool {
+pub(in crate::simulation) fn is_of_forces(phase: Phase) -> bool {
     phase > Phase::Boundary && phase < Phase::Integrate
 }

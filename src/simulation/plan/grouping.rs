@@ -23,7 +23,9 @@ impl Grouping<'_> {
     pub fn groups(&self) -> Vec<Vec<usize>> {
         let mut order: Vec<usize> = (0..self.schedule.len()).collect();
         let is_boundary = |&place: &usize| self.schedule[place].system.phase == Phase::Boundary;
-        for place in (0..self.schedule.len()).filter(is_boundary).rev() {
+        // where no system moves the nodes a solver does, which asks before all else where those go that are held
+        let moves = (0..self.schedule.len()).any(|place| self.moves_nodes(&[place]));
+        for place in (0..self.schedule.len()).filter(|place| moves && is_boundary(place)).rev() {
             self.put_off(place, &mut order);
         }
         let mut groups: Vec<Vec<usize>> = Vec::new();

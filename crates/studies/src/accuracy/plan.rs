@@ -226,7 +226,7 @@ fn variations(choices: &Choices) -> Vec<(Varied, Configuration)> {
     choices.laws.iter().for_each(|law| add(Varied::Law, &|c| c.law = Some(law.clone())));
     choices.places.iter().for_each(|place| add(Varied::Place, &|c| c.place = *place));
     for &method in &choices.methods {
-        // implicit steps run on the CPU only
+        // those on a GPU have another balance of products and vectors
         let place = if method.is_implicit() { Processor::Cpu } else { base.place };
         add(Varied::Solver, &|c| (c.method, c.place) = (method, place));
     }

@@ -40,6 +40,10 @@ impl Preconditioner for BlockJacobi {
         self.update(operator);
     }
 
+    fn block(&self, node: usize) -> DMat3 {
+        self.at_rest(node)
+    }
+
     fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
         let of_nodes = size_of_val(&self.stiffness[..]) + size_of_val(&self.inverses[..]);
         let of_axes = size_of_val(&self.inertia[..]) + size_of_val(&self.free[..]);

@@ -11,9 +11,9 @@ use super::columns::{each_column, pieces};
 use super::{Operator, Preconditioner};
 use crate::components::*;
 use crate::elements::MOST_NODES;
-use aggregates::RIGID;
+pub(in super::super) use aggregates::RIGID;
 use bevy_ecs::prelude::*;
-use coarse::Coarse;
+pub(in super::super) use coarse::Coarse;
 use glam::{DMat3, DVec3};
 
 /// B r = Q (D⁻¹ + P A⁻¹ Pᵀ) Qᵀ r, D the diagonal blocks, P the rigid motions of aggregates of some 30 nodes, A = Pᵀ
@@ -29,6 +29,8 @@ pub(in crate::simulation) struct TwoLevel {
     /// The inverses of the blocks, turned.
     inverses: Vec<DMat3>,
     turned: bool,
+    /// How often matrices have been made.
+    made: u64,
     /// The residual without what moves pieces as a whole (N).
     residual: Vec<f64>,
 }
@@ -57,10 +59,27 @@ impl Preconditioner for TwoLevel {
             self.pieces = find_pieces(operator);
         }
         if changed != Changed::Nothing {
+            self.made += 1;
             self.pieces.iter_mut().for_each(|piece| piece.coarse.factorize(&piece.nodes, operator));
         }
         self.turn(operator, changed != Changed::Nothing);
         self.residual.resize(operator.free.len(), 0.0);
+    }
+
+    fn block(&self, node: usize) -> DMat3 {
+        self.inverses[node]
+    }
+
+    fn coarse(&self) -> Vec<&Coarse> {
+        self.pieces.iter().map(|piece| &piece.coarse).collect()
+    }
+
+    fn made(&self) -> u64 {
+        self.made
+    }
+
+    fn settle(&self, right: &[f64], x: &mut [f64]) {
+        self.pieces.iter().for_each(|piece| piece.settle(&self.fine.inertia, right, x));
     }
 
     fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
@@ -121,6 +140,21 @@ impl Piece {
             (0..3).for_each(|i| residual[3 * node + i] -= inertia[3 * node + i] * motion[i]);
         }
         motion
+    }
+
+    /// Adds a motion of the whole to x (m) such that tᵀ (b − D x) = 0 along each axis that nothing holds: elements do
+    /// not resist it, so that D alone is there of the operator.
+    fn settle(&self, inertia: &[f64], right: &[f64], x: &mut [f64]) {
+        let per_inertia = self.coarse.per_inertia;
+        if per_inertia == DVec3::ZERO {
+            return;
+        }
+        let left = |axis: usize| right[axis] - inertia[axis] * x[axis];
+        let sum = |i: usize| -> f64 { self.nodes.iter().map(|(node, _)| left(3 * node + i)).sum() };
+        let motion = DVec3::new(sum(0), sum(1), sum(2)) * per_inertia;
+        for (node, _) in &self.nodes {
+            (0..3).for_each(|i| x[3 * node + i] += motion[i]);
+        }
     }
 
     /// Puts a motion (m) in the place of the mean one in z.

@@ -39,6 +39,18 @@ impl Cholesky {
         size_of_val(&self.lower[..]) + size_of_val(&self.per_pivot[..])
     }
 
+    /// A⁻¹, row by row.
+    pub fn inverse(&self) -> Vec<f64> {
+        let size = self.per_pivot.len();
+        let mut inverse = vec![0.0; size * size];
+        // columns are rows: it is symmetric
+        for (place, row) in inverse.chunks_exact_mut(size.max(1)).enumerate() {
+            row[place] = 1.0;
+            self.solve(row);
+        }
+        inverse
+    }
+
     /// x of A x = b, in the place of b.
     pub fn solve(&self, b: &mut [f64]) {
         let start = |row: usize| row * (row + 1) / 2;
@@ -86,7 +98,13 @@ mod tests {
             let x: Vec<f64> = (0..size).map(|i| (i as f64 * 0.9).cos()).collect();
             let b: Vec<f64> = (0..size).map(|i| (0..size).map(|j| entry(i, j) * x[j]).sum()).collect();
             let mut found = b.clone();
-            Cholesky::of(lower, size).solve(&mut found);
+            let factor = Cholesky::of(lower, size);
+            factor.solve(&mut found);
+            let inverse = factor.inverse();
+            for (row, x) in inverse.chunks_exact(size).zip(&found) {
+                let (by_inverse, scale) = (dot(row, &b), row.iter().zip(&b).map(|(a, b)| (a * b).abs()).sum::<f64>());
+                assert!((by_inverse - x).abs() <= 1e-9 * (scale + x.abs()), "{lacking}: {by_inverse}, not {x}");
+            }
             assert!(lacking == 0 || found[20] == 0.0);
             for i in 0..size {
                 let again: f64 = (0..size).map(|j| entry(i, j) * found[j]).sum();

@@ -14,7 +14,7 @@ const MOST_AGGREGATES: usize = 128;
 const HARDLY_TURNED: f64 = 0.035;
 
 /// The coarse level of a piece.
-pub(super) struct Coarse {
+pub(in crate::simulation::implicit) struct Coarse {
     /// Its nodes that move along some axis, among those of all bodies, in their order.
     pub nodes: Vec<usize>,
     /// Where they are at rest (m).
@@ -70,7 +70,7 @@ impl Coarse {
 
     /// Adds what a column of an element's stiffness is to the rigid motions of its corners, whose places among the
     /// nodes are told.
-    pub fn add(&mut self, column: &Column<'_>, places: &[Option<usize>], free: &[bool]) {
+    pub(super) fn add(&mut self, column: &Column<'_>, places: &[Option<usize>], free: &[bool]) {
         let Some(own) = places[column.corner] else { return };
         let motion = motions(self.aggregates.arm[own], column.axis);
         let across = RIGID * self.aggregates.of_node[own];
@@ -133,6 +133,22 @@ impl Coarse {
             *arm = self.rotations[self.aggregates.of_node[own]] * self.aggregates.arm[own];
         }
         any
+    }
+
+    /// Its nodes, among those of all bodies, each with its aggregate and its arm at rest.
+    pub fn members(&self) -> impl Iterator<Item = (usize, usize, DVec3)> + '_ {
+        let of_aggregates = self.aggregates.of_node.iter().zip(&self.aggregates.arm);
+        self.nodes.iter().zip(of_aggregates).map(|(&node, (&aggregate, &arm))| (node, aggregate, arm))
+    }
+
+    /// How each aggregate has turned.
+    pub fn rotations(&self) -> &[DMat3] {
+        &self.rotations
+    }
+
+    /// The inverse of the matrix, row by row (m/N).
+    pub fn inverse(&self) -> Vec<f64> {
+        self.factor.inverse()
     }
 
     /// How many unknowns it has.

@@ -1,0 +1,120 @@
+//! Forces at trial displacements on a device, and what travels for them.
+
+use super::super::trial::{Trial, is_of_forces};
+use crate::backend::device::{Device, bring_to_host, overwrite_on_device};
+use crate::backend::kernel::KernelId;
+use crate::backend::step::trial_record;
+use crate::components::*;
+use crate::error::Error;
+use crate::scene::schema::Inversion;
+use crate::systems::Phase;
+use bevy_ecs::prelude::*;
+
+/// What a step writes on the host at its end.
+const WRITTEN: [&str; 4] =
+    [Displacement::NAME, DisplacementIncrement::NAME, DisplacementCompensation::NAME, FirstInverted::NAME];
+/// What a step begins with on the host that kernels may have written.
+const READ: [&str; 6] = [
+    Displacement::NAME,
+    DisplacementIncrement::NAME,
+    DisplacementCompensation::NAME,
+    ConstrainedAxes::NAME,
+    Alive::NAME,
+    FirstInverted::NAME,
+];
+/// What changes besides where elements have gone.
+const OF_ELEMENTS_LEFT: [&str; 3] = [Mass::NAME, DampingCoefficient::NAME, RestShape::NAME];
+
+/// Brings the state to the host that a step begins with.
+pub(in super::super) fn bring_state(world: &mut World) -> Result<(), Error> {
+    let mut alive = world.query::<&Alive>();
+    let mut left = |world: &World| alive.iter(world).flat_map(|alive| &alive.0).filter(|&&alive| alive != 0).count();
+    let before = left(world);
+    bring_to_host(world, |_, name| READ.contains(&name))?;
+    if left(world) != before {
+        bring_to_host(world, |_, name| OF_ELEMENTS_LEFT.contains(&name))?;
+    }
+    Ok(())
+}
+
+/// Sends the state to the device that a step has come to, or has gone back to.
+pub(in super::super) fn send_state(world: &mut World) -> Result<(), Error> {
+    overwrite_on_device(world, |_, name| WRITTEN.contains(&name))
+}
+
+impl Trial<'_> {
+    /// Whether a GPU has the forces.
+    pub fn is_on_device(&self) -> bool {
+        self.world.contains_resource::<Device>()
+    }
+
+    /// The kernels of some phases.
+    pub(super) fn kernels(&self, phases: impl Fn(Phase) -> bool) -> Vec<KernelId> {
+        self.passes.iter().filter(|pass| phases(pass.phase)).flat_map(|pass| pass.kernels()).copied().collect()
+    }
+
+    /// The record of forces at the end of the step.
+    pub(super) fn record(&self) -> Vec<u8> {
+        let trying = self.world.get_resource::<TrialForces>().is_some_and(|trial| trial.trying);
+        trial_record(self.world.resource::<Clock>(), self.world.resource::<Signals>(), trying)
+    }
+
+    /// Runs the kernels of some phases.
+    fn run_kernels(&mut self, phases: impl Fn(Phase) -> bool) -> Result<(), Error> {
+        let (kernels, record) = (self.kernels(phases), self.record());
+        if kernels.is_empty() {
+            return Ok(());
+        }
+        super::run(self.world, &kernels, &record, 1)
+    }
+
+    /// Says where held axes go.
+    pub fn boundary_on_device(&mut self) -> Result<(), Error> {
+        self.run_kernels(|phase| phase == Phase::Boundary)?;
+        bring_to_host(self.world, |_, name| name == DisplacementIncrement::NAME)
+    }
+
+    /// Takes the forces at the displacements, and if so at the velocities, that the host has.
+    pub fn forces_on_device(&mut self, with_velocities: bool) -> Result<(), Error> {
+        let trying = self.world.get_resource::<TrialForces>().is_some_and(|trial| trial.trying);
+        // of what is only tried nothing is noted
+        let noted = if trying { forget_inverted(self.world) } else { Vec::new() };
+        let moves = |name| name == Displacement::NAME || with_velocities && name == DisplacementIncrement::NAME;
+        overwrite_on_device(self.world, |_, name| moves(name) || name == FirstInverted::NAME)?;
+        self.run_kernels(is_of_forces)?;
+        let found = [InternalForce::NAME, ExternalForce::NAME, FirstInverted::NAME];
+        bring_to_host(self.world, |_, name| found.contains(&name))?;
+        if trying {
+            let inverted = must_not_be_inverted(self.world);
+            if let Some(mut trial) = self.world.get_resource_mut::<TrialForces>() {
+                trial.inverted = inverted;
+            }
+            remember_inverted(self.world, noted);
+        }
+        Ok(())
+    }
+}
+
+fn forget_inverted(world: &mut World) -> Vec<(Entity, Vec<u32>)> {
+    let mut blocks = world.query::<(Entity, &mut FirstInverted)>();
+    let taken = blocks.iter_mut(world).map(|(block, mut inverted)| {
+        let nothing = vec![u32::MAX; inverted.0.len()];
+        (block, std::mem::replace(&mut inverted.0, nothing))
+    });
+    taken.collect()
+}
+
+fn remember_inverted(world: &mut World, noted: Vec<(Entity, Vec<u32>)>) {
+    for (block, numbers) in noted {
+        if let Some(mut inverted) = world.get_mut::<FirstInverted>(block) {
+            inverted.0 = numbers;
+        }
+    }
+}
+
+/// Whether an element is noted that must not be turned inside out.
+fn must_not_be_inverted(world: &mut World) -> bool {
+    let mut blocks = world.query::<(&FirstInverted, Option<&OnInversion>)>();
+    let must_not = |policy: Option<&OnInversion>| policy.is_none_or(|policy| policy.0 == Inversion::Stop);
+    blocks.iter(world).any(|(inverted, policy)| must_not(policy) && inverted.0.first() != Some(&u32::MAX))
+}
