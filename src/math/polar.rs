@@ -248,7 +248,10 @@ mod tests {
             // the further, the more of λ's other roots are near
             let gap = (stretches.min_element() + a.min(b)) / stretches.element_sum();
             let (single, strain) = errors::<f32>(rotation, stretches, axes);
-            assert!(single.max(strain) < 64.0 * f64::from(f32::EPSILON) / gap.powi(2), "{stretches}: {single:e} {strain:e}");
+            assert!(
+                single.max(strain) < 64.0 * f64::from(f32::EPSILON) / gap.powi(2),
+                "{stretches}: {single:e} {strain:e}"
+            );
             let (double, strain) = errors::<f64>(rotation, stretches, axes);
             assert!(double.max(strain) < 64.0 * f64::EPSILON / gap.powi(2), "{stretches}: {double:e} {strain:e}");
         }

@@ -8,7 +8,7 @@ use super::options::{BackendChoice, Chosen, choose};
 use super::plan::{Over, Pass, Plan, each_once};
 use super::prepare::{Prepared, add_loads, counts, prepare};
 use super::schedule::Scheduled;
-use super::scheme::{fit_workgroups, sum_forces, summed};
+use super::scheme::{fill_gpu, fit_workgroups, sum_forces, summed};
 use super::solver::Solver;
 use super::step_kernels::step_kernels;
 use super::{Facts, Job, Options, ScheduledPass, Simulation};
@@ -82,8 +82,11 @@ impl Simulation {
         let mut solver = Solver::of(&scene.scene, options.precision, &mut world);
 
         let Chosen { gpu, mut why } = chosen(&scene.scene, &schedule, options)?;
-        if gpu.is_some() {
+        if let Some(gpu) = &gpu {
             why += &fit_workgroups(&mut world);
+            if options.scheme.is_none() && !gpu.report().software {
+                why += &fill_gpu(&mut world);
+            }
         }
         let gpu_name = gpu.as_ref().map(|gpu| gpu.report().name.clone());
         let kernels = match gpu {
@@ -95,7 +98,7 @@ impl Simulation {
                     why = format!("the GPU cannot take this scene: {reason}");
                     world.remove_resource::<Device>();
                     world.remove_resource::<GuardKernels>();
-                    sum_forces(options.scheme, &mut world);
+                    sum_forces(options.scheme.unwrap_or_default(), &mut world);
                     None
                 }
                 Err(error) => return Err(error),

@@ -8,6 +8,7 @@ mod kernels;
 mod page;
 
 use super::Simulation;
+use super::implicit::is_of_forces;
 use super::known::Known;
 use super::plan::{Pass, Plan, Planned};
 use crate::backend::dispatch::Dispatched;

@@ -30,8 +30,9 @@ pub struct Options {
     pub instructions: Instructions,
     /// Which GPU, when there are several.
     pub gpu: Choice,
-    /// How element forces are summed.
-    pub scheme: Scheme,
+    /// How element forces are summed; `None`: patch by patch, but in two passes where a GPU has too few patches to work
+    /// on at once.
+    pub scheme: Option<Scheme>,
     /// Less than that GPU allows, for trying out what becomes of a scene on a smaller one.
     pub gpu_limits: SmallerLimits,
     /// Whether a program may [grab](crate::Simulation::grab) bodies while it runs: they have forces on nodes then.

@@ -34,7 +34,8 @@ pub(super) fn prepare<'a>(
     // what is shared among threads before elements are counted: distances of tools that are files
     let many = if scene.scene.tools.values().any(|tool| tool.mesh.is_some()) { usize::MAX } else { 0 };
     world.insert_resource(Cpu::new(options.threads, many, options.instructions));
-    let assembly = assemble(scene, options.precision, options.scheme, known.laws(), world, diagnostics);
+    let assembly =
+        assemble(scene, options.precision, options.scheme.unwrap_or_default(), known.laws(), world, diagnostics);
     known.check(diagnostics);
     check_names(scene.scene.schedule.as_deref().unwrap_or_default(), known, diagnostics);
     let assembly = assembly?;

@@ -6,6 +6,11 @@ use bevy_ecs::prelude::*;
 use std::collections::BTreeMap;
 use std::fmt::{Display, Formatter};
 
+/// Patches that fill a GPU. Fewer leave most of it idle while each workgroup sums round after round, and two passes,
+/// whose elements and nodes are all independent, take half to three quarters of the time in spite of their traffic; from
+/// about here on patches win, fourfold in the end (docs/performance.md, measured on an H200 of 132 multiprocessors).
+const FILLING: usize = 256;
+
 /// Makes room for the element forces of all bodies, in another scheme than before.
 pub(super) fn sum_forces(scheme: Scheme, world: &mut World) {
     let bodies: Vec<Entity> = world.query_filtered::<Entity, With<ElementForce>>().iter(world).collect();
@@ -56,6 +61,23 @@ pub(super) fn fit_workgroups(world: &mut World) -> String {
             said += &format!("; forces of `{name}` are summed in two passes: {reason}");
             crate::assembly::insert_forces(Scheme::TwoPass, body, world);
         }
+    }
+    said
+}
+
+/// Sums the forces of bodies in two passes that have too few patches to fill a GPU. Those of one patch stay: they take
+/// many steps in a dispatch. Says of which.
+pub(super) fn fill_gpu(world: &mut World) -> String {
+    let mut counts: BTreeMap<Entity, usize> = BTreeMap::new();
+    for (block, patches) in world.query::<(&Block, &Patches)>().iter(world) {
+        *counts.entry(block.body).or_default() += patches.count();
+    }
+    counts.retain(|_, count| (2..FILLING).contains(count));
+    let mut said = String::new();
+    for (body, count) in counts {
+        let name = world.get::<Label>(body).map_or_else(String::new, |label| label.0.clone());
+        said += &format!("; forces of `{name}` are summed in two passes: {count} patches do not fill a GPU");
+        crate::assembly::insert_forces(Scheme::TwoPass, body, world);
     }
     said
 }

@@ -287,7 +287,7 @@ fn attempt(seed: u64, kind: Kind, gpu: bool) -> Result<Ending, String> {
             run_into_a_folder(&scene, &options, &whole)?;
         }
         if !made.decides {
-            let two = run(&scene, &Options { scheme: Scheme::TwoPass, ..options.clone() })?;
+            let two = run(&scene, &Options { scheme: Some(Scheme::TwoPass), ..options.clone() })?;
             near("in two passes", &whole, &two, if precision == Precision::F64 { 1e-6 } else { 0.05 })?;
         }
         of_precision.push(whole);

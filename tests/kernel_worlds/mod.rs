@@ -266,7 +266,7 @@ impl Effects {
             Err(problem) => panic!("{}", problem.render(false)),
         };
         let options =
-            Options { backend, gpu: gpu_choice(), scheme: self.scheme, grabs: self.grabs, ..Options::default() };
+            Options { backend, gpu: gpu_choice(), scheme: Some(self.scheme), grabs: self.grabs, ..Options::default() };
         Simulation::new(&scene, &options).unwrap_or_else(|error| panic!("{error}\n{text}"))
     }
 }

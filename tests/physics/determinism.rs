@@ -144,7 +144,7 @@ fn both_schemes_move_alike() {
     for run in configurations() {
         for effects in [Effects::Laws, Effects::All, Effects::Means] {
             let [patches, two_pass] = [Scheme::Patches, Scheme::TwoPass].map(|scheme| {
-                let options = Options { scheme, ..run.options.clone() };
+                let options = Options { scheme: Some(scheme), ..run.options.clone() };
                 let mut simulation = start(&mesh, &Configuration { options, ..run }, effects, folder.path());
                 simulation.advance(60).unwrap();
                 simulation.displacements("b").unwrap()
@@ -170,7 +170,7 @@ fn rest_shapes_from_places_are_those_that_are_read() {
         );
         let [patches, two_pass] = [Scheme::Patches, Scheme::TwoPass].map(|scheme| {
             let options =
-                Options { scheme, backend: BackendChoice::Cpu, precision: Precision::F32, ..Options::default() };
+                Options { scheme: Some(scheme), backend: BackendChoice::Cpu, precision: Precision::F32, ..Options::default() };
             let mut simulation = Configuration { name: "CPU", options }.start_in(&text, Path::new("."));
             let world = simulation.world_mut();
             let known = world.query::<&Patches>().iter(world).filter(|patches| !patches.places.is_empty()).count();

@@ -148,7 +148,7 @@ fn shares(text: &str, registry: &Registry, one: &str, other: &str) -> bool {
 fn how_forces_are_summed_is_told() {
     let scene = SceneFile::from_text("pass.ron", &scene("", "", true), Path::new("."), &[]).unwrap();
     for (scheme, word) in [(Scheme::Patches, "patch by patch"), (Scheme::TwoPass, "in two passes")] {
-        let options = Options { backend: BackendChoice::Cpu, scheme, ..Options::default() };
+        let options = Options { backend: BackendChoice::Cpu, scheme: Some(scheme), ..Options::default() };
         let explained = Simulation::new(&scene, &options).unwrap().explain(&Registry::default()).unwrap();
         let told = explained.systems.iter().filter_map(|system| Some((system.name.as_str(), system.sums.as_ref()?)));
         let told: Vec<_> = told.collect();

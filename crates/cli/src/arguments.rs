@@ -167,9 +167,9 @@ pub struct HowArguments {
     )]
     pub threads: u16,
     /// How element forces are summed: patch by patch in cache or a GPU's workgroup memory, or in two passes over
-    /// memory, to compare with
-    #[arg(long, value_enum, default_value_t = SchemeName::Patches)]
-    pub scheme: SchemeName,
+    /// memory [default: patches, and two passes of small bodies on a GPU]
+    #[arg(long, value_enum)]
+    pub scheme: Option<SchemeName>,
 }
 
 #[derive(Args)]
@@ -240,7 +240,7 @@ impl AccuracyArguments {
     pub fn options(&self) -> Options {
         let backend = if self.backend == BackendName::Gpu { BackendName::Gpu } else { BackendName::Cpu };
         let (gpu, precision, threads) = (self.gpu.clone(), self.precision, self.threads);
-        HowArguments { backend, gpu, precision, threads, scheme: SchemeName::Patches }.options()
+        HowArguments { backend, gpu, precision, threads, scheme: None }.options()
     }
 }
 
@@ -326,10 +326,10 @@ impl HowArguments {
             },
             threads: self.threads.into(),
             gpu: Choice::parse(&self.gpu),
-            scheme: match self.scheme {
+            scheme: self.scheme.map(|name| match name {
                 SchemeName::Patches => Scheme::Patches,
                 SchemeName::TwoPass => Scheme::TwoPass,
-            },
+            }),
             forgets_start: true,
             ..Options::default()
         }

@@ -226,7 +226,7 @@ impl Case {
                 "portable" => Instructions::Portable,
                 _ => Instructions::Widest,
             },
-            scheme: if self.scheme == "patches" { Scheme::Patches } else { Scheme::TwoPass },
+            scheme: Some(if self.scheme == "patches" { Scheme::Patches } else { Scheme::TwoPass }),
             forgets_start: true,
             ..Options::default()
         }
