@@ -217,17 +217,22 @@ fn ages(felt: &[Felt]) {
     println!("  median {:.2} ms, 99 % below {:.2} ms, longest {longest:.2} ms", at(0.5), at(0.99));
 }
 
-/// What a tick costs the device: a pose and a touch (ns).
-fn overhead(touched: &Touched, options: &Options) -> Result<f64, Error> {
+/// What a tick costs the device (ns): a pose that is sent, a touch that is taken, a force that is made of it.
+fn overhead(touched: &Touched, options: &Options) -> Result<[f64; 3], Error> {
     let mut port = Simulation::new(&touched.scene(&[])?, options)?.open_port("device 0")?;
-    let (started, many) = (Instant::now(), 1_000_000);
-    let mut sum = 0;
-    for _ in 0..many {
-        port.send(std::hint::black_box(&DevicePose::default()));
-        sum += std::hint::black_box(port.touch()).sequence;
-    }
-    std::hint::black_box(sum);
-    Ok(1e9 * started.elapsed().as_secs_f64() / f64::from(many))
+    let mut coupling = VirtualCoupling::new(400.0, 0.0, 3.0);
+    let (pose, touch) = (DevicePose::default(), port.touch());
+    let each = |part: &mut dyn FnMut(f64) -> f64| {
+        let (started, many) = (Instant::now(), 1_000_000);
+        let sum: f64 = (0..many).map(|tick| part(1e-3 * f64::from(tick))).sum();
+        std::hint::black_box(sum);
+        1e9 * started.elapsed().as_secs_f64() / f64::from(many)
+    };
+    Ok([
+        each(&mut |time| port.send(&DevicePose { time, ..std::hint::black_box(pose) }) as f64),
+        each(&mut |_| std::hint::black_box(port.touch()).time),
+        each(&mut |time| coupling.force(std::hint::black_box(&touch), pose.place, pose.velocity, time).z),
+    ])
 }
 
 #[allow(dead_code)]
@@ -250,7 +255,8 @@ fn main() -> Result<(), Error> {
         println!("{:.2} s of life simulated; {} of {} ticks late", summary.simulated, kept.late, kept.ticks);
     }
     println!("real-time factor {:.3}", summary.real_time_factor);
-    println!("a pose sent and a touch taken: {:.0} ns", overhead(&touched, &options)?);
+    let [sent, taken, made] = overhead(&touched, &options)?;
+    println!("a pose sent: {sent:.0} ns; a touch taken: {taken:.0} ns; a force made of it: {made:.0} ns");
     println!("replayed from {} poses: the same bits: {}", recording.poses.len(), {
         replays(&touched, &options, &recording, &mut simulation)?
     });

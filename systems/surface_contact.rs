@@ -6,6 +6,7 @@ mod device;
 mod faced;
 mod gather;
 mod kernels;
+mod look;
 mod meet;
 mod memory;
 mod motion;
@@ -142,8 +143,8 @@ struct Surface {
     /// Which way the triangles look that are.
     normals: Vec<DVec3>,
     fresh: Vec<DVec3>,
-    /// Where nodes were when the lists were made.
-    since: motion::Since,
+    /// How far nodes have moved since the lists were made.
+    motion: look::Motion,
     /// Of each point in the lists, how far that may be before it has to be looked at again (m), and the least of all.
     wake: Vec<f64>,
     first_wake: f64,
@@ -161,8 +162,6 @@ struct Surface {
     found: Vec<faced::Found>,
     gathered: gather::Gathered,
     forces: Vec<DVec3>,
-    /// How far the fastest node went in a step, when lists for a GPU were made (m).
-    largest: f64,
     figures: Figures,
 }
 
@@ -251,11 +250,16 @@ impl SurfaceContacts {
         self.surface.figures
     }
 
-    /// Whether nothing can be near anything, when nodes have moved so.
-    fn sleeps(&self, moved: motion::Moved) -> bool {
-        let farthest = self.farthest(motion::reach(self, moved.step)) + moved.nearer;
-        let edges_are_far = self.surface.crossings.near.is_empty();
-        farthest <= self.surface.lists.radius && farthest < self.surface.first_wake && edges_are_far
+    /// Whether nothing faced anything in the last step, and no edges may cross.
+    fn is_idle(&self) -> bool {
+        let Surface { pressed, touching, crossings, .. } = &self.surface;
+        pressed.is_empty() && touching.is_empty() && crossings.near.is_empty()
+    }
+
+    /// Whether nothing can be near anything that is looked at so far (m), and nothing was in the last step.
+    fn sleeps(&self, reach: f64) -> bool {
+        let Surface { first_wake, motion, .. } = &self.surface;
+        self.is_idle() && self.lists_hold(reach) && self.farthest(reach) + motion.lists.moved < *first_wake
     }
 }
 
@@ -282,9 +286,8 @@ fn step<T: Scalar>(
     bodies: &mut Query<(Entity, MeetingColumns)>,
 ) -> Result<(), Error> {
     contacts.surface.figures.steps += 1;
-    let moved = motion::moved::<T>(contacts, bodies, cpu);
-    let idle = contacts.surface.pressed.is_empty() && contacts.surface.touching.is_empty();
-    if idle && moved.is_some_and(|moved| contacts.sleeps(moved)) {
+    let reach = follow::<T>(contacts, (clock, cpu), bodies);
+    if contacts.sleeps(reach) {
         contacts.surface.figures.asleep += 1;
         return Ok(());
     }
@@ -292,21 +295,49 @@ fn step<T: Scalar>(
     if bodies.len() != contacts.bodies.len() {
         return Err(missing("a column of a body"));
     }
-    let largest = motion::largest_step(contacts, &bodies);
-    let reach = motion::reach(contacts, largest);
-    let nearer = motion::search(contacts, &bodies, (reach, moved), cpu);
-    if !faced::wake(contacts, reach, nearer) && contacts.surface.crossings.near.is_empty() {
+    if !contacts.lists_hold(reach) {
+        motion::list(contacts, &bodies, reach, cpu);
+    }
+    if !faced::wake(contacts, reach) && contacts.surface.crossings.near.is_empty() {
         contacts.surface.figures.asleep += 1;
         meet::release(&mut contacts.surface, &mut bodies);
         meet::forget(contacts, &[], &mut bodies);
         return Ok(());
     }
     motion::update_places(contacts, &bodies, cpu);
-    let lately = motion::follow_shortlists(contacts, &bodies, (reach, largest), moved);
-    faced::face(contacts, reach, [nearer, lately], cpu);
+    if !contacts.shortlists_hold(reach) {
+        motion::begin_shortlists(contacts, &bodies, reach);
+    }
+    faced::face(contacts, reach, cpu);
     crossings::find(contacts, reach);
-    meet::meet(contacts, largest, (clock, cpu), &mut bodies);
+    meet::meet(contacts, (clock, cpu), &mut bodies);
     contacts.surface.figures.examined += contacts.surface.found.len() as u64;
     contacts.surface.figures.contacts += contacts.surface.gathered.set.contacts.len() as u64;
     Ok(())
+}
+
+/// Follows how nodes move; gives how far faces must be looked at (m). It is looked where nodes are when what their
+/// steps add up to is too much to leave all as it is.
+fn follow<T: Scalar>(
+    contacts: &mut SurfaceContacts,
+    (clock, cpu): (&Clock, &Cpu),
+    bodies: &Query<(Entity, MeetingColumns)>,
+) -> f64 {
+    let mut motion = std::mem::take(&mut contacts.surface.motion);
+    let entities = std::mem::take(&mut contacts.bodies);
+    let moving = |body: u32| {
+        let (_, MeetingColumnsReadOnlyItem { nodes, .. }) = bodies.get(entities[body as usize]).ok()?;
+        Some([nodes.u.slice::<T>(), nodes.step.slice::<T>()])
+    };
+    motion.follow(&moving, clock, cpu);
+    let reach = motion::reach(contacts, motion.largest);
+    contacts.surface.motion = motion;
+    let all_hold = || !contacts.is_idle() && contacts.lists_hold(reach) && contacts.shortlists_hold(reach);
+    if !contacts.sleeps(reach) && !all_hold() {
+        let mut motion = std::mem::take(&mut contacts.surface.motion);
+        motion.look(&moving, cpu);
+        contacts.surface.motion = motion;
+    }
+    contacts.bodies = entities;
+    reach
 }

@@ -78,8 +78,8 @@ fn spread(x: u64) -> u64 {
 
 /// For each of the author's nodes its new row. `patches` are elements, each a list of nodes. First come, patch by
 /// patch, the nodes that no other patch has, if a patch has at least [`GROUP_ROWS`] such; then those that patches
-/// share, and last nodes without elements; each in the order in which elements first touch them. Nodes that are kept
-/// `apart`, ascending, count as shared.
+/// share, then those that are kept `apart` (ascending), which are nobody's own: who goes over them finds them side by
+/// side; and last nodes without elements. Each in the order in which elements first touch them.
 pub fn node_rows<'a>(
     node_count: usize,
     patches: impl Iterator<Item = impl Iterator<Item = &'a [u32]>>,
@@ -113,7 +113,12 @@ pub fn node_rows<'a>(
             inside().for_each(|&node| give(&mut rows[node as usize]));
         }
     }
-    touched.iter().flatten().for_each(|&node| give(&mut rows[node as usize]));
+    let mut is_apart = vec![false; node_count];
+    apart.iter().for_each(|&node| is_apart[node as usize] = true);
+    for last in [false, true] {
+        let nodes = touched.iter().flatten().filter(|&&node| is_apart[node as usize] == last);
+        nodes.for_each(|&node| give(&mut rows[node as usize]));
+    }
     rows.iter_mut().for_each(give);
     rows
 }

@@ -207,6 +207,9 @@ pub struct Energies {
     pub damping_loss: Option<f64>,
     /// Taken by the formula of implicit steps since the start, when counted.
     pub scheme_loss: Option<f64>,
+    /// Of the work of loads, what impact and friction have taken since the start, and tools when they caught nodes;
+    /// none where nothing may touch.
+    pub contact_loss: Option<f64>,
     /// Done by constraints since the start, when counted.
     pub constraint_work: Option<f64>,
     /// Done against internal forces since the start, when counted: strain, hourglass and what viscosity took.

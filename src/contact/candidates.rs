@@ -36,13 +36,16 @@ impl Listed<'_> {
 /// So many triangles' nearest places are kept while it is found what a point faces; points near more are rare.
 const KEPT: usize = 16;
 
-/// Where triangles are nearest to a point: of those of its list found beforehand, if all of them are looked at.
+/// A triangle, where it is nearest to a point, and how far that is (m).
+type Nearest = (u32, OnTriangle, f64);
+
+/// Where triangles are nearest to a point: of those of its list that are looked at found beforehand.
 pub(super) struct Candidates<'a> {
     surfaces: &'a Surfaces,
     now: Placed<'a>,
     at: DVec3,
     listed: Listed<'a>,
-    kept: SmallVec<[(OnTriangle, f64); KEPT]>,
+    kept: SmallVec<[Nearest; KEPT]>,
     edge: f64,
 }
 
@@ -51,12 +54,13 @@ impl<'a> Candidates<'a> {
         Self { surfaces, now, at, listed, kept: SmallVec::new(), edge }
     }
 
-    /// Finds beforehand where those of the list are nearest.
-    pub(super) fn find_all(&mut self) {
-        for (place, &triangle) in self.listed.triangles.iter().take(KEPT).enumerate() {
+    /// Finds beforehand where those at such places in the list are nearest.
+    pub(super) fn find(&mut self, places: impl Iterator<Item = usize>) {
+        for place in places.take(KEPT) {
+            let triangle = self.listed.triangles[place];
             let nowhere = || (OnTriangle { at: DVec3::ZERO, weights: [0.0; 3], part: 0 }, f64::INFINITY);
-            let kept = if self.listed.is_far(place) { nowhere() } else { self.nearest_of(triangle) };
-            self.kept.push(kept);
+            let (found, distance) = if self.listed.is_far(place) { nowhere() } else { self.nearest_of(triangle) };
+            self.kept.push((triangle, found, distance));
         }
     }
 
@@ -66,18 +70,19 @@ impl<'a> Candidates<'a> {
         (found, self.at.distance(found.at))
     }
 
-    /// The nearest place of the triangle at a place in the list, and how far that is (m).
-    pub(super) fn nearest(&self, place: usize) -> (OnTriangle, f64) {
-        match self.kept.get(place) {
-            Some(&kept) => kept,
+    /// The nearest place of the triangle at a place in the list, and how far that is (m); of those found beforehand it
+    /// is the one of that number.
+    pub(super) fn nearest(&self, number: usize, place: usize) -> (OnTriangle, f64) {
+        match self.kept.get(number) {
+            Some(&(_, found, distance)) => (found, distance),
             None => self.nearest_of(self.listed.triangles[place]),
         }
     }
 
     /// How far a triangle is (m), whether it is in the list or not; infinitely far where it cannot be near enough.
     fn distance(&self, triangle: u32) -> f64 {
-        match self.listed.triangles.iter().take(self.kept.len()).position(|&other| other == triangle) {
-            Some(place) => self.kept[place].1,
+        match self.kept.iter().find(|(other, ..)| *other == triangle) {
+            Some(&(.., distance)) => distance,
             None => self.nearest_of(triangle).1,
         }
     }
@@ -119,7 +124,7 @@ impl<'a> Candidates<'a> {
             return self.listed.distances[place] > self.listed.farthest + more + self.listed.nearer + moved;
         }
         let triangle = self.listed.triangles[place];
-        let (found, distance) = self.nearest(place);
+        let (found, distance) = self.nearest(place, place);
         if distance - moved > f64::max(reach + more, self.surfaces.depths[triangle as usize]) {
             return true;
         }

@@ -56,13 +56,13 @@ impl Surfaces {
         let mut candidates = Candidates::new(self, now, point.place(now.places), listed, edge);
         let mut way = Way { surfaces: self, now, point, edge, own: None, waiting: None, faced: [None; 2] };
         let mut wakes = f64::INFINITY;
-        let mut look = |candidates: &Candidates<'_>, place: usize| {
+        let mut look = |candidates: &Candidates<'_>, number: usize, place: usize| {
             if listed.is_far(place) {
                 wakes = wakes.min(listed.distances[place]);
                 return;
             }
             let triangle = listed.triangles[place];
-            let (found, distance) = candidates.nearest(place);
+            let (found, distance) = candidates.nearest(number, place);
             // both have moved since the list was made
             wakes = wakes.min(distance - listed.nearer);
             let (reach, depth) = (reach(triangle), self.depths[triangle as usize]);
@@ -75,14 +75,18 @@ impl Surfaces {
             }
         };
         match short.places() {
-            Some(places) => places.iter().for_each(|&place| look(&candidates, usize::from(place))),
+            Some(places) => {
+                let places = places.iter().map(|&place| usize::from(place));
+                candidates.find(places.clone());
+                places.enumerate().for_each(|(number, place)| look(&candidates, number, place));
+            }
             None => {
-                candidates.find_all();
-                (0..listed.triangles.len()).for_each(|place| look(&candidates, place));
+                candidates.find(0..listed.triangles.len());
+                (0..listed.triangles.len()).for_each(|place| look(&candidates, place, place));
                 let away = |place: usize| candidates.stays_away(place, reach(listed.triangles[place]), stays);
                 let nearest = |place: usize| match listed.is_far(place) {
                     true => listed.distances[place],
-                    false => candidates.nearest(place).1 - listed.nearer,
+                    false => candidates.nearest(place, place).1 - listed.nearer,
                 };
                 *short = Shortlist::of(listed.triangles.len(), away, nearest);
             }

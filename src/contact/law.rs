@@ -73,7 +73,8 @@ impl Contact {
 
     /// Its nodes with their weights.
     pub fn parts(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
-        self.nodes.iter().zip(self.weights).take(self.count).map(|(&node, weight)| (node as usize, weight))
+        let count = self.count.min(MOST);
+        self.nodes[..count].iter().zip(&self.weights[..count]).map(|(&node, &weight)| (node as usize, weight))
     }
 
     /// The force on the point (N).
@@ -120,6 +121,10 @@ impl Contact {
 
     /// Notes how far it has slipped elastically, now that forces are known.
     fn note_slip(&mut self, steps: &[DVec3]) {
+        if self.pressing <= 0.0 || self.friction <= 0.0 {
+            self.slip = DVec3::ZERO;
+            return;
+        }
         let slip = self.along(self.slip + self.relative(steps));
         let (bound, size) = (self.friction * self.pressing * self.yields_along, slip.length());
         self.slip = if size > bound { slip * (bound / size) } else { slip };
@@ -186,15 +191,23 @@ impl ContactSet {
     /// with exactly the largest force.
     pub fn solve(&mut self, sweeps: usize, cpu: &Cpu) {
         self.list_nodes(cpu);
-        self.split(cpu);
         self.changes.clear();
         self.changes.resize(self.contacts.len(), DVec3::ZERO);
-        for _ in 0..sweeps.max(1) {
-            self.change(Contact::press, cpu);
-            if self.contacts.iter().any(|contact| contact.friction > 0.0) {
-                self.change(Contact::rub, cpu);
+        let (shares, responses) = (self.shares(), std::mem::take(&mut self.responses));
+        let rub = self.contacts.iter().any(|contact| contact.friction > 0.0);
+        for sweep in 0..sweeps.max(1) {
+            let press = |contact: &mut Contact, steps: &[DVec3]| {
+                if sweep == 0 {
+                    contact.find_yields(&shares, &responses);
+                }
+                contact.press(steps)
+            };
+            self.change(press, &responses, cpu);
+            if rub {
+                self.change(Contact::rub, &responses, cpu);
             }
         }
+        (self.shares, self.responses) = (shares, responses);
         let steps = &self.steps;
         cpu.for_each(self.contacts.chunks_mut(CONTACTS_A_TASK), |contacts| {
             contacts.iter_mut().for_each(|contact| contact.note_slip(steps));
@@ -225,30 +238,31 @@ impl ContactSet {
         starts[0] = 0;
     }
 
-    /// Splits the mass of each node among its contacts.
-    fn split(&mut self, cpu: &Cpu) {
-        self.shares.clear();
-        self.shares.resize(self.steps.len(), 0.0);
+    /// Into how many shares the mass of each node is split among its contacts.
+    fn shares(&mut self) -> Vec<f64> {
+        let mut shares = std::mem::take(&mut self.shares);
+        shares.clear();
+        shares.resize(self.steps.len(), 0.0);
         for contact in &self.contacts {
-            for (node, weight) in contact.parts() {
-                self.shares[node] += weight.abs();
-            }
+            contact.parts().for_each(|(node, weight)| shares[node] += weight.abs());
         }
-        let (shares, responses) = (&self.shares, &self.responses);
-        cpu.for_each(self.contacts.chunks_mut(CONTACTS_A_TASK), |contacts| {
-            contacts.iter_mut().for_each(|contact| contact.find_yields(shares, responses));
-        });
+        shares
     }
 
     /// Corrects forces, and the steps of nodes by that.
-    fn change(&mut self, correct: impl Fn(&mut Contact, &[DVec3]) -> DVec3 + Sync + Send, cpu: &Cpu) {
-        let Self { contacts, steps, responses, changes, starts, of_nodes, .. } = self;
+    fn change(
+        &mut self,
+        correct: impl Fn(&mut Contact, &[DVec3]) -> DVec3 + Sync + Send,
+        responses: &[DVec3],
+        cpu: &Cpu,
+    ) {
+        let Self { contacts, steps, changes, starts, of_nodes, .. } = self;
         let now = &*steps;
         let tasks = contacts.chunks_mut(CONTACTS_A_TASK).zip(changes.chunks_mut(CONTACTS_A_TASK));
         cpu.for_each(tasks, |(contacts, changes)| {
             contacts.iter_mut().zip(changes).for_each(|(contact, change)| *change = correct(contact, now));
         });
-        let (responses, changes) = (&*responses, &*changes);
+        let changes = &*changes;
         if starts.is_empty() {
             for (contact, change) in contacts.iter().zip(changes).filter(|(_, change)| **change != DVec3::ZERO) {
                 contact.parts().for_each(|(node, weight)| steps[node] += responses[node] * (*change * weight));

@@ -41,3 +41,26 @@ pub fn read_contact(world: &mut World, body: Entity) -> Result<Option<ContactRea
     }
     Ok(Some(reading))
 }
+
+/// What contact has taken since the start (J): impact and friction where bodies touch each other and themselves, and
+/// what tools lose, to catching nodes too; the sum of what [`read_contact`] and [`read_tool`](super::read_tool) tell.
+/// `None` where nothing may touch.
+pub(super) fn loss(world: &mut World) -> Result<Option<f64>, Error> {
+    let wanted = [SurfaceTouch::NAME, FaceTouch::NAME, ToolTouch::NAME, ToolHold::NAME];
+    bring_to_host(world, |_, name| wanted.contains(&name))?;
+    let every =
+        |of: &Reals, number: usize, stride: usize| (number..of.len()).step_by(stride).map(|at| of.get(at)).sum();
+    let mut losses: Vec<f64> = Vec::new();
+    for (of_nodes, of_faces) in world.query::<(&SurfaceTouch, Option<&FaceTouch>)>().iter(world) {
+        losses.push(every(&of_nodes.0, 7, MEETING_NUMBERS));
+        losses.extend(of_faces.map(|of_faces| every(&of_faces.0, 7, MEETING_NUMBERS)));
+    }
+    for (contacts, touch) in world.query::<(&ToolContacts, &ToolTouch)>().iter(world) {
+        losses.push(every(&touch.0, 6, contacts.numbers_a_tool()));
+    }
+    for (grasps, hold) in world.query::<(&Grasps, &ToolHold)>().iter(world) {
+        losses.push(every(&hold.0, 5, grasps.numbers_a_grasp()));
+    }
+    losses.extend(super::free_tools::losses(world));
+    Ok((!losses.is_empty()).then(|| losses.iter().sum()))
+}

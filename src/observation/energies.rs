@@ -10,7 +10,7 @@ use bevy_ecs::prelude::*;
 use glam::DVec3;
 
 /// All columns.
-const HEADER: [&str; 10] = [
+const HEADER: [&str; 11] = [
     "time (s)",
     "kinetic (J)",
     "strain (J)",
@@ -20,21 +20,25 @@ const HEADER: [&str; 10] = [
     "damping loss (J)",
     "constraint work (J)",
     "internal work (J)",
+    "contact loss (J)",
     "scheme loss (J)",
 ];
 
-/// The columns of `energy.csv`; a static analysis counts no work, and only implicit steps lose some.
-pub fn energy_header(at_rest: bool, implicit: bool) -> &'static [&'static str] {
-    match (at_rest, implicit) {
-        (true, _) => &HEADER[..5],
-        (false, false) => &HEADER[..9],
-        (false, true) => &HEADER,
+/// The columns of `energy.csv`; a static analysis counts no work, only what touches something loses energy to that, and
+/// only implicit steps lose some.
+pub fn energy_header(at_rest: bool, implicit: bool, touches: bool) -> Vec<&'static str> {
+    let of_contact = if touches { &HEADER[9..10] } else { &[] };
+    let of_scheme = if implicit { &HEADER[10..] } else { &[] };
+    match at_rest {
+        true => HEADER[..5].to_vec(),
+        false => [&HEADER[..9], of_contact, of_scheme].concat(),
     }
 }
 
-/// What stands in them after the time.
-pub(super) fn values(e: &Energies) -> Vec<f64> {
-    let works = [e.load_work, e.damping_loss, e.constraint_work, e.internal_work, e.scheme_loss];
+/// What stands in them after the time; `touches`: whether what contact takes has a column.
+pub(super) fn values(e: &Energies, touches: bool) -> Vec<f64> {
+    let of_contact = touches.then(|| e.contact_loss.unwrap_or(0.0));
+    let works = [e.load_work, e.damping_loss, e.constraint_work, e.internal_work, of_contact, e.scheme_loss];
     let held = [e.kinetic, e.strain, e.hourglass, e.removed];
     held.into_iter().chain(works.into_iter().flatten()).collect()
 }
@@ -118,6 +122,7 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
         }
     }
     super::free_tools::add_energies(world, &mut sum);
+    sum.contact_loss = super::contacts::loss(world)?;
     let blocks: Vec<Entity> = world.query_filtered::<Entity, With<Block>>().iter(world).collect();
     for entity in blocks {
         let (strain, hourglass) = block_energies(world, entity);

@@ -92,6 +92,12 @@ pub(super) fn add_forces(world: &World, body: Entity, forces: &mut [DVec3]) {
     }
 }
 
+/// What contact with each has taken since the start (J).
+pub(super) fn losses(world: &World) -> Vec<f64> {
+    let motions = world.get_resource::<FreeMotions>();
+    motions.map_or(Vec::new(), |motions| motions.all.iter().map(|state| state.contact_loss).collect())
+}
+
 /// Adds to the energies of bodies those of free tools: work done on them counts with that of loads, where it is
 /// counted.
 pub(super) fn add_energies(world: &World, sum: &mut Energies) {

@@ -57,6 +57,8 @@ pub struct Observer {
     pub fields: Cadence,
     /// How energies are taken; `None`: not at all.
     pub energy: Option<Track>,
+    /// Whether what contact takes is a column beside the energies.
+    pub touches: bool,
     /// How often snapshots are written; `None`: never.
     pub snapshots: Option<Cadence>,
     /// How the run is guarded.
@@ -166,7 +168,7 @@ impl Observer {
             None => None,
             Some(_) => Some(Table::create(
                 &folder.claim("energy.csv")?,
-                energy_header(self.to_rest, world.resource::<Clock>().velocities_at_ends),
+                &energy_header(self.to_rest, world.resource::<Clock>().velocities_at_ends, self.touches),
             )?),
         };
         let mut probes = BTreeMap::new();

@@ -103,7 +103,7 @@ impl Observer {
 
     /// The energies now.
     fn energy_row(&self, world: &mut World) -> Result<Row, Error> {
-        let values = energies::values(&energies(world)?);
+        let values = energies::values(&energies(world)?, self.touches);
         self.finite(world, values.iter().copied(), || "the energies".into())?;
         Ok((world.resource::<Clock>().time(), values))
     }

@@ -300,6 +300,7 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
     let mut observer = Observer::default();
     observer.fields = every(scene.scene.fields_every());
     observer.energy = scene.scene.output.energies_every.map(|time| Track::new(every(time)));
+    observer.touches = scene.scene.touches();
     observer.snapshots = scene.scene.output.snapshots_every.filter(|_| !scene.scene.is_static()).map(every);
     let mut limits = scene.scene.guards.clone();
     if scene.scene.is_implicit() {

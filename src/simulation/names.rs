@@ -51,8 +51,8 @@ impl Names {
             .map(|(name, probe)| (format!("probe_{name}.csv"), with_units(&observation::header(&probe.what))))
             .collect();
         if scene.output.energies_every.is_some() {
-            let header = observation::energy_header(scene.is_static(), scene.is_implicit());
-            columns.insert("energy.csv".into(), with_units(header));
+            let header = observation::energy_header(scene.is_static(), scene.is_implicit(), scene.touches());
+            columns.insert("energy.csv".into(), with_units(&header));
         }
         if scene.is_static() {
             columns.insert("convergence.csv".into(), with_units(&observation::CONVERGENCE));
@@ -138,6 +138,7 @@ pub const UNITS: &[(&str, &str)] = &[
     ("energies.load_work", "J"),
     ("energies.damping_loss", "J"),
     ("energies.scheme_loss", "J"),
+    ("energies.contact_loss", "J"),
     ("implicit.largest_residual_left", "1"),
     ("implicit.longest_step", "s"),
     ("energies.constraint_work", "J"),

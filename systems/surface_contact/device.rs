@@ -120,7 +120,7 @@ pub(crate) fn find(world: &mut World) {
 }
 
 fn find_lists<T: Scalar>(
-    cpu: Res<Cpu>,
+    (clock, cpu): (Res<Clock>, Res<Cpu>),
     mut contacts: ResMut<SurfaceContacts>,
     mut bodies: Query<(Entity, MeetingColumns)>,
     authorings: Query<&Authoring>,
@@ -132,9 +132,10 @@ fn find_lists<T: Scalar>(
     if bodies.len() != contacts.bodies.len() {
         return;
     }
-    contacts.surface.largest = motion::largest_step(contacts, &bodies);
-    let reach = motion::reach(contacts, contacts.surface.largest);
-    motion::search(contacts, &bodies, (reach, None), &cpu);
+    let moving = |body: u32| Some([bodies[body as usize].u, bodies[body as usize].step]);
+    contacts.surface.motion.follow(&moving, &clock, &cpu);
+    let reach = motion::reach(contacts, contacts.surface.motion.largest);
+    motion::list(contacts, &bodies, reach, &cpu);
 }
 
 impl SurfaceContacts {
@@ -322,7 +323,7 @@ fn renew(world: &mut World) -> Result<f64, Error> {
     find(world);
     let contacts = world.resource::<SurfaceContacts>();
     let words = contacts.list_words(world);
-    let steps = contacts.steps_ahead(0.0, contacts.surface.largest);
+    let steps = contacts.steps_ahead(0.0, contacts.surface.motion.largest);
     let Some(lists) = world.get_resource::<OnDevice>().map(|on_device| on_device.lists) else { return Ok(steps) };
     if let Some(mut device) = world.get_resource_mut::<Device>() {
         device.gpu().upload(lists, 0, bytemuck::cast_slice(&words))?;

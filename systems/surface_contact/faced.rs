@@ -17,15 +17,15 @@ pub(super) struct Found {
     short: Shortlist,
 }
 
-/// Who is awake: points in the lists that may be near something, as far as `nearer` (m) nodes have moved since. Whether
-/// there are any.
-pub(super) fn wake(contacts: &mut SurfaceContacts, reach: f64, nearer: f64) -> bool {
-    let farthest = contacts.farthest(reach);
+/// Who is awake: points in the lists that may be near something, as far as nodes have moved since. Whether there are
+/// any.
+pub(super) fn wake(contacts: &mut SurfaceContacts, reach: f64) -> bool {
+    let farthest = contacts.farthest(reach) + contacts.surface.motion.lists.moved;
     let surface = &mut contacts.surface;
     surface.found.clear();
     surface.first_wake = f64::INFINITY;
     for (place, &wake) in (0..).zip(&surface.wake) {
-        if nearer + farthest < wake {
+        if farthest < wake {
             surface.first_wake = surface.first_wake.min(wake);
         } else {
             surface.found.push(Found { place, faced: Faced::default(), short: Shortlist::UNKNOWN });
@@ -34,10 +34,10 @@ pub(super) fn wake(contacts: &mut SurfaceContacts, reach: f64, nearer: f64) -> b
     !surface.found.is_empty()
 }
 
-/// Finds what those face that are awake. How far nodes have moved (m): how much nearer since the lists were made, and
-/// how far since shortlists were begun.
-pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, [nearer, lately]: [f64; 2], cpu: &Cpu) {
+/// Finds what those face that are awake.
+pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
     let farthest = contacts.farthest(reach);
+    let [nearer, lately] = [&contacts.surface.motion.lists, &contacts.surface.motion.shortlists].map(|mark| mark.moved);
     let mut found = std::mem::take(&mut contacts.surface.found);
     let surface = &contacts.surface;
     let now = Placed { places: &surface.places, normals: &surface.normals };

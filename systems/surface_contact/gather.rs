@@ -128,13 +128,13 @@ pub(super) fn gather<T: Scalar>(
         let point = &surface.points[number as usize];
         let kept = contacts.kept(number);
         let touch = bodies[kept.body].kept_mut(kept);
-        let Some(first) = faced.first else {
+        let Some(first) = &faced.first else {
             if touch[3] != T::default() {
                 touch[3] = T::default();
             }
             continue;
         };
-        let outside = contacts.gap(point, &first);
+        let outside = contacts.gap(point, first);
         let allowed = allowed(touch, outside, in_step);
         if allowed != touch[3].to_f64() {
             touch[3] = T::from_f64(allowed);
@@ -144,21 +144,21 @@ pub(super) fn gather<T: Scalar>(
         (touch[4], touch[5]) = (T::from_f64(FACES), T::from_f64(outside));
         gathered.facing.push(number);
         let allowed = touch[3].to_f64();
-        let both = [(Some(first), true), (faced.second, false)];
-        for (facing, is_first) in both.into_iter().filter_map(|(facing, is_first)| Some((facing?, is_first))) {
+        let second = faced.second.as_ref().map(|facing| (facing, false));
+        for (facing, is_first) in std::iter::once((first, true)).chain(second) {
             let body = surface.triangles.bodies[facing.triangle as usize];
             let Some(Meeting { friction, spring, .. }) = contacts.meeting(point.body, body) else { continue };
             let friction = if stuck { friction[0] } else { friction[1] };
             // of another face nothing is known of how it got there
             let (outside, allowed, slip) = match is_first {
                 true => (outside, allowed, slip),
-                false => (contacts.gap(point, &facing), 0.0, DVec3::ZERO),
+                false => (contacts.gap(point, facing), 0.0, DVec3::ZERO),
             };
             let gap = match is_first {
                 true => (outside - allowed).max(-OUT * contacts.edge),
                 false => outside.max(-in_step.settling),
             };
-            let (corners, weights) = surface.corners_of(point, &facing);
+            let (corners, weights) = surface.corners_of(point, facing);
             let of_face = corners.into_iter().zip(weights).map(|(node, weight)| (node, -weight));
             let within = if point.triangle.is_some() { SHARES * contacts.edge } else { 0.0 };
             gathered.add(

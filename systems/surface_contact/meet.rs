@@ -95,7 +95,6 @@ pub(super) fn forget<T: Scalar>(contacts: &mut SurfaceContacts, now: &[u32], bod
 /// Finds the forces of a step and adds them to the loads.
 pub(super) fn meet<T: Scalar>(
     contacts: &mut SurfaceContacts,
-    largest: f64,
     (clock, cpu): (&Clock, &Cpu),
     bodies: &mut [BodySlices<'_, T>],
 ) {
@@ -104,7 +103,11 @@ pub(super) fn meet<T: Scalar>(
     let mut gathered = std::mem::take(&mut contacts.surface.gathered);
     release(&mut contacts.surface, bodies);
     gathered.clear();
-    let in_step = InStep { largest, settling: contacts.settling(clock), coefficients: &coefficients };
+    let in_step = InStep {
+        largest: contacts.surface.motion.largest,
+        settling: contacts.settling(clock),
+        coefficients: &coefficients,
+    };
     gather(contacts, &mut gathered, &found, &in_step, bodies);
     forget(contacts, &gathered.facing, bodies);
     gathered.set.solve(contacts.sweeps, cpu);

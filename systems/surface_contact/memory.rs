@@ -41,7 +41,7 @@ impl Surface {
         SurfaceMemory {
             surfaces: of_nodes + of_points + of_triangles + self.crossings.bytes(),
             trees: self.trees.iter().map(|tree| tree.bytes()).sum(),
-            lists: self.lists.bytes() + bytes(&self.wake) + bytes(&self.shortlists) + near + self.since.bytes(),
+            lists: self.lists.bytes() + bytes(&self.wake) + bytes(&self.shortlists) + near + self.motion.bytes(),
             pairs: self.lists.triangles.len(),
             step: of_step + remembered,
         }

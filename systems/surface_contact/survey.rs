@@ -2,7 +2,7 @@
 
 use super::body_slices::Kept;
 use super::crossings::Crossings;
-use super::motion::Since;
+use super::look::Motion;
 use super::{MeetingColumns, Surface, SurfaceContacts};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
@@ -91,9 +91,9 @@ fn remember(contacts: &mut SurfaceContacts, bodies: &mut Query<(Entity, MeetingC
     if !is_other && !contacts.bodies.iter().any(changed) {
         return;
     }
-    let Surface { nodes, kept, pressed, touching, since, .. } = &mut contacts.surface;
+    let Surface { nodes, kept, pressed, touching, motion, .. } = &mut contacts.surface;
     // they may be anywhere
-    *since = Since::of(nodes);
+    *motion = Motion::of(nodes);
     pressed.clear();
     touching.clear();
     let columns: Vec<_> = contacts.bodies.iter().filter_map(|&body| bodies.get(body).ok()).collect();
@@ -170,7 +170,7 @@ fn survey(
     surface.gathered.slots = vec![u32::MAX; surface.nodes.len()];
     surface.places = vec![DVec3::ZERO; surface.nodes.len()];
     surface.normals = vec![DVec3::ZERO; surface.triangles.triangles.len()];
-    surface.since = Since::of(&surface.nodes);
+    surface.motion = Motion::of(&surface.nodes);
     surface.numbers = contacts.bodies.iter().copied().zip(0..).collect();
     surface.numbers.sort_unstable();
     let columns: Vec<_> = contacts.bodies.iter().filter_map(|&body| bodies.get(body).ok()).collect();

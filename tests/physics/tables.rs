@@ -99,3 +99,29 @@ fn rows_keep_their_times_when_the_step_changes() {
         assert_eq!(next, (simulation.time() / 0.001 - 1e-9).floor() as usize, "{}: {rows:?}", run.name);
     }
 }
+
+/// Where something may touch, what contact takes has a column, which names and units know; elsewhere it has none.
+#[test]
+fn what_contact_takes_is_a_column_where_something_may_touch() {
+    let place = tempfile::tempdir().unwrap();
+    let wall =
+        "tools: {\"wall\": (shape: Box(size: (0.02, 1, 1)), at: (0.111, 0, 0))}, contacts: [Tool(tool: \"wall\")],";
+    for run in configurations() {
+        for touches in [false, true] {
+            let slow = scene(0.0, "0.005").replace("(3, 0, 0)", "(0.3, 0, 0)");
+            let text = slow.replacen("loads:", &format!("{} loads:", if touches { wall } else { "" }), 1);
+            let mut simulation = run.start(&text);
+            crate::frames::run_into(&mut simulation, place.path());
+            let summary = simulation.summary("done").unwrap();
+            let columns = &summary.names.columns["energy.csv"];
+            let column = columns.iter().position(|(name, unit)| (&name[..], &unit[..]) == ("contact loss", "J"));
+            assert_eq!((column.is_some(), summary.energies.contact_loss.is_some()), (touches, touches), "{}", run.name);
+            let rows = table(place.path(), "energy.csv");
+            assert!(rows.iter().all(|row| row.len() == columns.len()), "{}", run.name);
+            let Some(column) = column else { continue };
+            let (lost, energy) = (summary.tools["wall"].loss, rows[0][1]);
+            assert!(lost > 0.1 * energy, "{}: {lost} of {energy} J", run.name);
+            near(run.name, rows[rows.len() - 1][column], lost, energy, 1e-12);
+        }
+    }
+}

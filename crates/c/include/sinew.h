@@ -268,6 +268,10 @@ typedef struct {
      * Done against internal forces since the start.
      */
     double internal_work;
+    /**
+     * Of the work of loads, what contact has taken since the start.
+     */
+    double contact_loss;
 } SinewEnergies;
 
 /**

@@ -31,6 +31,8 @@ pub struct SinewEnergies {
     pub constraint_work: f64,
     /// Done against internal forces since the start.
     pub internal_work: f64,
+    /// Of the work of loads, what contact has taken since the start.
+    pub contact_loss: f64,
 }
 
 // SAFETY: it is repr(C), begins with its size, and has numbers only
@@ -72,6 +74,7 @@ pub unsafe extern "C" fn sinew_energies(simulation: *mut SinewSimulation, energi
             scheme_loss: now.scheme_loss.unwrap_or(f64::NAN),
             constraint_work: now.constraint_work.unwrap_or(f64::NAN),
             internal_work: now.internal_work.unwrap_or(f64::NAN),
+            contact_loss: now.contact_loss.unwrap_or(f64::NAN),
         };
         write(energies, told, "energies")
     })

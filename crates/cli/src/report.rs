@@ -184,6 +184,7 @@ fn energies(summary: &Summary, page: &mut Page) {
         ("of constraints", energies.constraint_work),
         ("against internal forces", energies.internal_work),
         ("lost to damping", energies.damping_loss),
+        ("lost to contact", energies.contact_loss),
     ];
     let works: Vec<(&str, f64)> = works.iter().filter_map(|(name, value)| Some((*name, (*value)?))).collect();
     if !works.is_empty() {

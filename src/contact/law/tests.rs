@@ -99,7 +99,8 @@ fn shares_of_mass_majorise_the_coupling_of_contacts() {
     let mut largest = 0.0_f64;
     for _ in 0..300 {
         let (mut set, _) = random_set(&mut random, 0.0, 0.0);
-        set.split(&one());
+        let (shares, responses) = (set.shares(), set.responses.clone());
+        set.contacts.iter_mut().for_each(|contact| contact.find_yields(&shares, &responses));
         let count = set.contacts.len();
         let mut forces: Vec<f64> = (0..count).map(|_| random.f64()).collect();
         let mut growth = 0.0;

@@ -290,6 +290,11 @@ impl Scene {
         matches!(self.analysis, Analysis::Static(search) if search.method == SearchMethod::Newton)
     }
 
+    /// Whether bodies may touch something, or be held by a tool, in a motion.
+    pub fn touches(&self) -> bool {
+        !self.is_static() && (!self.contacts.is_empty() || !self.tools.is_empty())
+    }
+
     /// Whether equilibrium is sought instead of motion.
     pub fn is_static(&self) -> bool {
         matches!(self.analysis, Analysis::Static(_))

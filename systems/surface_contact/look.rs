@@ -1,0 +1,261 @@
+//! How far surfaces have moved: at most what the steps of their nodes add up to, and now and then what it really is.
+
+use super::body_slices::{BodySlices, vector};
+use crate::backend::cpu::Cpu;
+use crate::components::*;
+use crate::math::Scalar;
+use glam::DVec3;
+use std::ops::Range;
+
+/// Steps that are added up before it is looked where nodes are.
+const STEPS_ADDED_UP: u32 = 64;
+
+/// Numbers that are compared side by side: whole registers, and whole vectors.
+const SIDE_BY_SIDE: usize = 24;
+
+/// What rounding to f32 takes of a difference at most, and more.
+const ROUNDING: f64 = 1e-6;
+
+/// Where nodes were at some time, and how far they have moved since.
+#[derive(Clone, Debug)]
+pub(super) struct Mark {
+    /// Displacements of the rows that are looked at (m); `None` before that time.
+    u: Option<Reals>,
+    /// How far at most two nodes have come nearer to each other since (m).
+    pub moved: f64,
+}
+
+impl Default for Mark {
+    fn default() -> Self {
+        Self { u: None, moved: f64::INFINITY }
+    }
+}
+
+/// How the nodes of surfaces move.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Motion {
+    /// Bodies' numbers, and rows in which nodes of their surfaces are, and no others: what is found must not depend on
+    /// what rows are beside them.
+    runs: Vec<(u32, Range<u32>)>,
+    /// Since the lists were made.
+    pub lists: Mark,
+    /// Since shortlists were begun.
+    pub shortlists: Mark,
+    /// How far the fastest node went in the last step, at most (m).
+    pub largest: f64,
+    /// Steps since it was looked where nodes are, and what rounding may have added to each (m).
+    added_up: u32,
+    rounding: f64,
+    /// Where one node of each run of rows was last (m), and how long a step was (s): who writes other displacements
+    /// than steps make is seen there.
+    watched: Vec<DVec3>,
+    time_step: f64,
+}
+
+/// Displacements of a body by its number, and the last steps (m).
+pub(super) trait Moving<'a, T: Scalar>: Fn(u32) -> Option<[&'a [T]; 2]> {}
+impl<'a, T: Scalar, F: Fn(u32) -> Option<[&'a [T]; 2]>> Moving<'a, T> for F {}
+
+impl Motion {
+    /// Of surfaces with these nodes: bodies' numbers and rows, both ascending.
+    pub fn of(nodes: &[(u32, u32)]) -> Self {
+        let mut runs: Vec<(u32, Range<u32>)> = Vec::new();
+        for &(body, row) in nodes {
+            match runs.last_mut().filter(|(other, rows)| *other == body && row == rows.end) {
+                Some((_, rows)) => rows.end = row + 1,
+                None => runs.push((body, row..row + 1)),
+            }
+        }
+        Self { runs, ..Self::default() }
+    }
+
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> usize {
+        let of =
+            |mark: &Mark| mark.u.as_ref().map_or(0, |u| u.len() * if u.precision() == Precision::F32 { 4 } else { 8 });
+        let marks = of(&self.lists) + of(&self.shortlists);
+        size_of_val(&self.runs[..]) + size_of_val(&self.watched[..]) + marks
+    }
+
+    /// Notes that the lists are made, with nodes where they are.
+    pub fn mark_lists<T: Scalar>(&mut self, bodies: &[BodySlices<'_, T>]) {
+        self.lists.set(&self.runs, bodies);
+    }
+
+    /// Notes that shortlists are begun, likewise.
+    pub fn mark_shortlists<T: Scalar>(&mut self, bodies: &[BodySlices<'_, T>]) {
+        self.shortlists.set(&self.runs, bodies);
+    }
+
+    /// Takes the last step into account: nodes have come nearer by what they went apart in it, at most. Where
+    /// displacements are not what steps make of them (on the way to equilibrium, after a change of the step, where
+    /// somebody else has written them), or many steps have been added up, it is looked where nodes are.
+    pub fn follow<'a, T: Scalar>(&mut self, moving: &impl Moving<'a, T>, clock: &Clock, cpu: &Cpu) {
+        let mut steps = Extremes::none();
+        let mut as_stepped = self.watched.len() == self.runs.len();
+        as_stepped &= clock.relaxation.is_none() && clock.time_step == self.time_step;
+        self.time_step = clock.time_step;
+        self.watched.resize(self.runs.len(), DVec3::NAN);
+        let mut before = self.watched.iter_mut();
+        for runs in self.runs.chunk_by(|a, b| a.0 == b.0) {
+            let Some([u, step]) = moving(runs[0].0) else { continue };
+            cpu.dispatch(See { seen: &mut steps, runs, now: step, then: None });
+            for ((_, rows), before) in runs.iter().zip(&mut before) {
+                let [now, went] = [u, step].map(|all| vector(all, rows.start as usize));
+                as_stepped &= now.distance(*before + went) <= ROUNDING * (before.length() + now.length());
+                *before = now;
+            }
+        }
+        self.largest = steps.longest();
+        self.added_up += 1;
+        let apart = steps.apart() + self.rounding;
+        self.lists.moved += apart;
+        self.shortlists.moved += apart;
+        if !as_stepped || self.added_up >= STEPS_ADDED_UP {
+            self.look(moving, cpu);
+        }
+    }
+
+    /// Looks where nodes are.
+    pub fn look<'a, T: Scalar>(&mut self, moving: &impl Moving<'a, T>, cpu: &Cpu) {
+        let see = |then: Option<&[T]>| {
+            let (mut seen, mut before) = (Extremes::none(), 0);
+            for runs in self.runs.chunk_by(|a, b| a.0 == b.0) {
+                let count = 3 * runs.iter().map(|(_, rows)| rows.len()).sum::<usize>();
+                let then = then.map(|then| &then[before..before + count]);
+                before += count;
+                let Some([u, _]) = moving(runs[0].0) else { continue };
+                cpu.dispatch(See { seen: &mut seen, runs, now: u, then });
+            }
+            seen
+        };
+        let moved = [&self.lists, &self.shortlists].map(|mark| Some(see(Some(mark.u.as_ref()?.slice::<T>())).apart()));
+        // each step rounds the displacements of both nodes
+        let epsilon = if size_of::<T>() == 4 { f64::from(f32::EPSILON) } else { f64::EPSILON };
+        let farthest = see(None).longest() + f64::from(STEPS_ADDED_UP) * self.largest;
+        (self.added_up, self.rounding) = (0, 2.0 * epsilon * farthest);
+        for (mark, moved) in [&mut self.lists, &mut self.shortlists].into_iter().zip(moved) {
+            mark.moved = moved.unwrap_or(f64::INFINITY);
+        }
+    }
+}
+
+impl Mark {
+    fn set<T: Scalar>(&mut self, runs: &[(u32, Range<u32>)], bodies: &[BodySlices<'_, T>]) {
+        let count = runs.iter().map(|(_, rows)| 3 * rows.len()).sum();
+        let precision = if size_of::<T>() == 4 { Precision::F32 } else { Precision::F64 };
+        if !self.u.as_ref().is_some_and(|u| u.len() == count && u.precision() == precision) {
+            self.u = None;
+        }
+        let mut left = self.u.get_or_insert_with(|| Reals::zeros(precision, count)).slice_mut::<T>();
+        for (body, rows) in runs {
+            let (of_run, others) = left.split_at_mut(3 * rows.len());
+            of_run.copy_from_slice(&bodies[*body as usize].u[numbers(rows)]);
+            left = others;
+        }
+        self.moved = 0.0;
+    }
+}
+
+/// The numbers of vectors in these rows.
+fn numbers(rows: &Range<u32>) -> Range<usize> {
+    3 * rows.start as usize..3 * rows.end as usize
+}
+
+/// The least and the largest of numbers along three axes, axis after axis.
+#[derive(Clone, Copy)]
+struct Extremes<T> {
+    low: [T; SIDE_BY_SIDE],
+    high: [T; SIDE_BY_SIDE],
+}
+
+impl<T: Scalar> Extremes<T> {
+    fn none() -> Self {
+        let far = T::from_f64(f64::from(f32::MAX));
+        Self { low: [far; SIDE_BY_SIDE], high: [-far; SIDE_BY_SIDE] }
+    }
+
+    /// Sees as many numbers as there are, side by side at most. What is no number is not seen here; it is what guards
+    /// look for.
+    #[inline(always)]
+    fn see(&mut self, numbers: &[T; SIDE_BY_SIDE], count: usize) {
+        for i in 0..count {
+            self.low[i] = if numbers[i] < self.low[i] { numbers[i] } else { self.low[i] };
+            self.high[i] = if numbers[i] > self.high[i] { numbers[i] } else { self.high[i] };
+        }
+    }
+
+    /// The least and the largest along each axis; nothing where nothing was seen.
+    fn bounds(&self) -> [DVec3; 2] {
+        let along = |axis: usize, of: &[T; SIDE_BY_SIDE], better: fn(f64, f64) -> f64| {
+            of.iter().skip(axis).step_by(3).map(|number| number.to_f64()).reduce(better).unwrap_or(0.0)
+        };
+        let low = [0, 1, 2].map(|axis| along(axis, &self.low, f64::min));
+        let high = [0, 1, 2].map(|axis| along(axis, &self.high, f64::max));
+        if low[0] > high[0] { [DVec3::ZERO; 2] } else { [low.into(), high.into()] }
+    }
+
+    /// The largest distance between two vectors that were seen (m), and a little more.
+    fn apart(&self) -> f64 {
+        let [low, high] = self.bounds();
+        (high - low).length() * (1.0 + ROUNDING)
+    }
+
+    /// The longest vector that was seen is not longer than this (m).
+    fn longest(&self) -> f64 {
+        let [low, high] = self.bounds();
+        low.abs().max(high.abs()).length() * (1.0 + ROUNDING)
+    }
+}
+
+/// The task of seeing vectors of a body in these rows: as they are, or how they differ from what they were.
+struct See<'a, T> {
+    seen: &'a mut Extremes<T>,
+    runs: &'a [(u32, Range<u32>)],
+    now: &'a [T],
+    then: Option<&'a [T]>,
+}
+
+impl<T: Scalar> See<'_, T> {
+    /// Sees fewer than are seen side by side.
+    #[inline(always)]
+    fn some(seen: &mut Extremes<T>, now: &[T], then: Option<&[T]>) {
+        let (count, mut numbers) = (now.len(), [T::default(); SIDE_BY_SIDE]);
+        numbers[..count].copy_from_slice(now);
+        if let Some(then) = then {
+            (0..count).for_each(|i| numbers[i] = numbers[i] - then[i]);
+        }
+        seen.see(&numbers, count);
+    }
+}
+
+impl<T: Scalar> pulp::WithSimd for See<'_, T> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        // in registers
+        let mut seen = *self.seen;
+        let mut before = 0;
+        for (_, rows) in self.runs {
+            let now = &self.now[numbers(rows)];
+            let then = self.then.map(|then| &then[before..before + now.len()]);
+            before += now.len();
+            let (whole, rest) = now.as_chunks::<SIDE_BY_SIDE>();
+            match then.map(|then| then.as_chunks::<SIDE_BY_SIDE>()) {
+                None => {
+                    whole.iter().for_each(|now| seen.see(now, SIDE_BY_SIDE));
+                    Self::some(&mut seen, rest, None);
+                }
+                Some((then, rest_then)) => {
+                    for (now, then) in whole.iter().zip(then) {
+                        let mut moved = *now;
+                        (0..SIDE_BY_SIDE).for_each(|i| moved[i] = moved[i] - then[i]);
+                        seen.see(&moved, SIDE_BY_SIDE);
+                    }
+                    Self::some(&mut seen, rest, Some(rest_then));
+                }
+            }
+        }
+        *self.seen = seen;
+    }
+}
