@@ -45,7 +45,10 @@ pub fn steps_to(due: f64, state: &State) -> u64 {
 
 /// Whether a film ends with a state.
 pub fn is_last(state: &State) -> bool {
-    state.finished || state.breakdown.is_some() || state.refusal.is_some()
+    // pictures are half a step off at most
+    let end = state.loaded.as_ref().map_or(0.0, |loaded| loaded.scene.scene.duration);
+    let over = state.finished || (state.time_step > 0.0 && state.time + 0.5 * state.time_step >= end);
+    over || state.breakdown.is_some() || state.refusal.is_some()
 }
 
 /// A picture of a state.

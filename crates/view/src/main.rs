@@ -94,7 +94,7 @@ fn main() -> ExitCode {
         Backend::Gpu => BackendChoice::Gpu,
     };
     let precision = if arguments.f64 { Precision::F64 } else { Precision::F32 };
-    if !(arguments.speed > 0.0) {
+    if arguments.speed.is_nan() || arguments.speed <= 0.0 {
         eprintln!("sinew-view: --speed {}: it must be above 0", arguments.speed);
         return ExitCode::from(2);
     }

@@ -207,6 +207,10 @@ fn a_finished_run_is_seen_at_all_of_its_times() {
     wait(&mut harness, "its start", |state| state.time == 0.0);
     harness.key_press(Key::T);
     wait(&mut harness, "its stresses", |state| state.bodies[0].values.len() == 27);
+    let middle = harness.get_by_label("Picture of the scene").rect().center();
+    pointer(&mut harness, middle, Some(true), Modifiers::NONE);
+    pointer(&mut harness, middle, Some(false), Modifiers::NONE);
+    wait(&mut harness, "a pick", |state| state.picked.as_ref().is_some_and(|picked| picked.material == "tissue"));
     // what it did not write is told
     harness.key_press(Key::L);
     wait(&mut harness, "a refusal", |state| state.refusal.is_some());

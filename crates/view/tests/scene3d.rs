@@ -4,9 +4,9 @@
 use glam::{Vec2, Vec3};
 use sinew::driver::{Command, Session, State};
 use sinew::scene::schema::OutputField;
-use sinew::{BackendChoice, Options, SceneFile};
+use sinew::{BackendChoice, Folder, Options, SceneFile, Simulation};
 use sinew_pictures::render::{Camera, Image, Picture, View, paint, write_png};
-use sinew_view::Settings;
+use sinew_view::{Settings, Start, headless};
 use sinew_view::scene3d::{Look, Scene, Scene3d};
 use sinew_view::surfaces::Scenery;
 use std::path::{Path, PathBuf};
@@ -162,7 +162,7 @@ fn tissue(scene3d: &mut Scene3d, state: &State, lends: bool) -> Image {
 fn what_is_drawn_from_the_simulations_own_buffer_is_where_its_nodes_are() {
     let Some((device, queue)) = device() else { return };
     drop((device, queue));
-    let host = sinew_view::headless::device().unwrap();
+    let host = headless::device().unwrap();
     for mesh in ["cells: (5, 5, 5), elements: Hex8", "cells: (4, 4, 4), elements: Tet4"] {
         let text = include_str!("../../../scenes/cube_under_gravity.ron");
         let text = text.replace("cells: (10, 10, 10), elements: Hex8", mesh);
@@ -187,6 +187,63 @@ fn what_is_drawn_from_the_simulations_own_buffer_is_where_its_nodes_are() {
         assert!(difference(&moved, &copied) > 0.5, "{}", difference(&moved, &copied));
         drop(later);
     }
+}
+
+#[test]
+fn a_scene_is_filmed_by_simulated_time_and_a_finished_run_frame_by_frame() {
+    if device().is_none() {
+        return;
+    }
+    let place = tempfile::tempdir().unwrap();
+    let scene = place.path().join("cube.ron");
+    let text = include_str!("../../../scenes/cube_under_gravity.ron");
+    let text = text.replace("(10, 10, 10)", "(3, 3, 3)").replace("duration: 1,", "duration: 0.4,");
+    std::fs::write(&scene, &text).unwrap();
+    let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
+    let start = |path: &Path| Start { scene: Some(path.into()), options: options.clone(), ..Start::default() };
+    // 0.4 s at half the speed are 0.8 s of 25 pictures each, and the first one
+    let film = place.path().join("film");
+    let told = headless::film(&start(&scene), &film, (161, 120), 0.5).unwrap();
+    assert!(told.ends_with("21 pictures of 160 × 120"), "{told}");
+    let pictures = |folder: &Path| -> Vec<Vec<u8>> {
+        let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+        files.sort();
+        files.iter().map(|file| std::fs::read(file).unwrap()).collect()
+    };
+    let taken = pictures(&film);
+    assert!(taken.len() == 21 && taken[0] != taken[10], "it moves");
+    let out = place.path().join("out");
+    let mut folder = Folder::create(&out).unwrap();
+    std::fs::write(folder.claim("scene.ron").unwrap(), &text).unwrap();
+    let mut simulation = Simulation::new(&SceneFile::load(&scene, &[]).unwrap(), &options).unwrap();
+    simulation.write_into(&mut folder).unwrap();
+    simulation.finish().unwrap();
+    let film = place.path().join("film_of_run");
+    // a frame each 0.02 s
+    let told = headless::film(&start(&out), &film, (160, 120), 1.0).unwrap();
+    assert!(told.ends_with("21 pictures of 160 × 120"), "{told}");
+    assert!(pictures(&film)[0] != pictures(&film)[20]);
+    let stress = Settings { field: Some(OutputField::ContactGap), ..Settings::default() };
+    let lacks = headless::film(&Start { settings: stress, ..start(&out) }, &film, (160, 120), 1.0).unwrap_err();
+    assert!(lacks.contains("did not write contact_gap"), "{lacks}");
+}
+
+#[test]
+fn frames_are_timed_with_a_hand_that_pulls() {
+    if device().is_none() {
+        return;
+    }
+    let place = tempfile::tempdir().unwrap();
+    let scene = place.path().join("cube.ron");
+    let text = include_str!("../../../scenes/cube_under_gravity.ron").replace("(10, 10, 10)", "(2, 2, 2)");
+    std::fs::write(&scene, text).unwrap();
+    let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
+    let start = Start { scene: Some(scene), options, ..Start::default() };
+    let table = sinew_view::measure::frame_times(&start, 3, (64, 48), 1.0).unwrap();
+    println!("{table}");
+    assert!(table.contains("8 elements, 27 nodes; steps on CPU") && table.contains("3 frames of 16."), "{table}");
+    assert!(["steps", "state", "drawing", "all"].iter().all(|part| table.contains(&format!("\n{part}"))));
+    assert!(sinew_view::measure::frame_times(&start, 0, (64, 48), 1.0).is_err());
 }
 
 /// Pictures to look at: `SINEW_PICTURES=/tmp cargo test -p sinew-view --test scene3d looked_at -- --ignored`.

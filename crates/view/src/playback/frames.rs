@@ -110,20 +110,7 @@ impl Frames {
         if frame.points != self.rest.len() {
             return Err(damaged("its points are not those of the first frame"));
         }
-        let flags = numbers(&frame, FieldAssociation::Cells, "alive")?.map(|found| found.0);
-        let mut alive: Vec<Vec<u8>> = bodies.iter().map(|body| vec![0; body.cells.len()]).collect();
-        for (cell, place) in places.iter().enumerate() {
-            let (body, at) = self.homes[*place];
-            alive[body as usize][at as usize] = u8::from(flags.as_ref().is_none_or(|flags| flags[cell] != 0.0));
-        }
-        for (number, now) in alive.into_iter().enumerate() {
-            let before = self.alive.get(number).map_or(0, |before| before.1);
-            match self.alive.get_mut(number) {
-                Some(known) if *known.0 == now => {}
-                Some(known) => *known = (Arc::new(now), before + 1),
-                None => self.alive.push((Arc::new(now), 1)),
-            }
-        }
+        self.note_alive(&frame, &places, bodies)?;
         let moved = numbers(&frame, FieldAssociation::Points, "displacement")?.map(|found| found.0);
         let arrows = match arrows {
             Some(field) => numbers(&frame, FieldAssociation::Points, field.array())?,
@@ -150,13 +137,7 @@ impl Frames {
                     (all[components * range.start..components * range.end].to_vec(), *components)
                 }
                 Some((_, (all, components))) => {
-                    let mut own = vec![0.0; components * bodies[number].cells.len()];
-                    for (place, row) in places.iter().zip(all.chunks_exact((*components).max(1))) {
-                        let (body, at) = self.homes[*place];
-                        if body as usize == number {
-                            own[components * at as usize..][..*components].copy_from_slice(row);
-                        }
-                    }
+                    let own = self.of_elements(number, bodies[number].cells.len(), &places, (all, *components));
                     (own, *components)
                 }
             };
@@ -171,6 +152,42 @@ impl Frames {
             });
         }
         Ok(states)
+    }
+
+    /// Takes note of which elements are there, and whether that has changed.
+    fn note_alive(&mut self, frame: &FrameFile, places: &[usize], bodies: &[Body]) -> Result<(), RenderError> {
+        let flags = numbers(frame, FieldAssociation::Cells, "alive")?.map(|found| found.0);
+        let mut alive: Vec<Vec<u8>> = bodies.iter().map(|body| vec![0; body.cells.len()]).collect();
+        for (cell, place) in places.iter().enumerate() {
+            let (body, at) = self.homes[*place];
+            alive[body as usize][at as usize] = u8::from(flags.as_ref().is_none_or(|flags| flags[cell] != 0.0));
+        }
+        for (number, now) in alive.into_iter().enumerate() {
+            match self.alive.get_mut(number) {
+                Some(known) if *known.0 == now => {}
+                Some(known) => *known = (Arc::new(now), known.1 + 1),
+                None => self.alive.push((Arc::new(now), 1)),
+            }
+        }
+        Ok(())
+    }
+
+    /// The numbers of a body's elements, of those of all cells of a frame; 0 where they are gone.
+    fn of_elements(
+        &self,
+        number: usize,
+        count: usize,
+        places: &[usize],
+        (all, components): (&[f32], usize),
+    ) -> Vec<f32> {
+        let mut own = vec![0.0; components * count];
+        for (place, row) in places.iter().zip(all.chunks_exact(components.max(1))) {
+            let (body, at) = self.homes[*place];
+            if body as usize == number {
+                own[components * at as usize..][..components].copy_from_slice(row);
+            }
+        }
+        own
     }
 
     fn skin_states(&self, frame: &FrameFile, bodies: &[Body]) -> Result<Vec<Option<SkinState>>, RenderError> {

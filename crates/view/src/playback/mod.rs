@@ -1,12 +1,13 @@
 //! A finished run, as `sinew run` has written it, seen as if it ran: states by their times.
 
 mod frames;
+mod pick;
 mod tables;
 
 use frames::Frames;
 use glam::{DQuat, DVec3};
 use sinew::SceneFile;
-use sinew::driver::{Command, Loaded, Refusal, State, ToolState};
+use sinew::driver::{Command, Loaded, Picked, Refusal, State, ToolState};
 use sinew::observation::ToolReading;
 use sinew::scene::schema::OutputField;
 use sinew_pictures::render::Tools;
@@ -33,6 +34,7 @@ pub struct Playback {
     since: (Instant, f64),
     field: Option<OutputField>,
     arrows: Option<OutputField>,
+    picked: Option<Picked>,
     refusal: Option<Refusal>,
     commands: u64,
 }
@@ -85,6 +87,7 @@ impl Playback {
             since: (Instant::now(), 0.0),
             field: None,
             arrows: None,
+            picked: None,
             refusal: None,
             commands: 0,
         };
@@ -121,7 +124,10 @@ impl Playback {
             Command::Speed(speed) if speed > 0.0 => self.speed = speed,
             Command::Field(field) => self.field = field,
             Command::Arrows(field) => self.arrows = field,
-            Command::Release { .. } | Command::MoveGrab { .. } | Command::Pick { .. } => {}
+            Command::Pick { origin, direction } => {
+                self.picked = pick::pick(&self.loaded.bodies, &self.state.bodies, origin, direction);
+            }
+            Command::Release { .. } | Command::MoveGrab { .. } | Command::Lend(_) => {}
             _ => {
                 let reason = "this run is over: it can be looked at. Open its scene to pull at it and change it";
                 self.refusal = Some(Refusal { command: "run", reason: reason.into() });
@@ -193,6 +199,7 @@ impl Playback {
             real_time_factor: self.running.then_some(self.speed).filter(|speed| speed.is_finite()),
             measured: time,
             tools: self.tools.poses(row, time).into_iter().map(tool).collect(),
+            picked: self.picked.clone(),
             refusal: self.refusal.clone(),
             commands: self.commands,
             ..State::default()
