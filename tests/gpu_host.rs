@@ -60,7 +60,6 @@ fn mistakes_of_the_engine_are_its_errors_and_those_of_the_program_go_to_its_hand
     // what is lent is for reading, and this program does worse
     gpu.lend(x).unwrap().destroy();
     assert!(matches!(gpu.upload(x, 0, &[0; 16]), Err(GpuError::Device { .. })));
-    assert!(gpu.download(&[x]).is_err());
     assert_eq!(calls.load(Ordering::Relaxed), 0, "the program's handler hears nothing of it");
     let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::MAP_WRITE;
     let wrong = wgpu::BufferDescriptor { label: None, size: 16, usage, mapped_at_creation: false };

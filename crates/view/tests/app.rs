@@ -36,6 +36,7 @@ impl Place {
         let mut folder = Folder::create(&path).unwrap();
         std::fs::write(folder.claim("scene.ron").unwrap(), scene.text()).unwrap();
         simulation.write_into(&mut folder).unwrap();
+        simulation.observe().unwrap();
         simulation.finish().unwrap();
         simulation.write_nodes(&mut folder).unwrap();
         path
@@ -189,7 +190,7 @@ fn a_file_that_changes_is_read_again_and_a_wrong_one_tells_why_while_the_old_goe
 #[test]
 fn a_finished_run_is_seen_at_all_of_its_times() {
     let place = Place::new();
-    let folder = place.run("output: (fields_every: 0.1, energies_every: 0.1, fields: [VonMises])");
+    let folder = place.run("output: (fields_every: 0.1, energies_every: 0.1, fields: [Displacement, VonMises])");
     let mut harness = place.open_path(folder);
     assert_eq!(state(&harness).time, 0.0);
     harness.get_by_label("a finished run, 11 frames");
@@ -239,7 +240,8 @@ fn numbers_of_the_scene_change_while_it_runs_and_what_cannot_begins_anew() {
     wait(&mut harness, "a step", |state| state.step == 1 && state.commands > commands && state.refusal.is_none());
     set(&mut harness, "tissue.density", 900.0);
     wait(&mut harness, "a refusal", |state| state.refusal.as_ref().is_some_and(|told| told.command == "set"));
-    harness.step();
+    // until what is told has its place
+    harness.run_steps(4);
     press(&mut harness, "Start anew with it");
     wait(&mut harness, "the scene anew", |state| {
         let scene = state.loaded.as_ref().map(|loaded| loaded.scene.scene.clone());

@@ -217,6 +217,7 @@ fn a_scene_is_filmed_by_simulated_time_and_a_finished_run_frame_by_frame() {
     std::fs::write(folder.claim("scene.ron").unwrap(), &text).unwrap();
     let mut simulation = Simulation::new(&SceneFile::load(&scene, &[]).unwrap(), &options).unwrap();
     simulation.write_into(&mut folder).unwrap();
+    simulation.observe().unwrap();
     simulation.finish().unwrap();
     let film = place.path().join("film_of_run");
     // a frame each 0.02 s

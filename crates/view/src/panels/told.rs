@@ -115,12 +115,12 @@ impl App {
                 }
             }
             if let Some(refusal) = &state.refusal {
-                ui.colored_label(RED, RichText::new(&refusal.reason).monospace());
                 let anew = "takes the scene with this value, from its start";
                 if refusal.command == "set" && ui.button("Start anew with it").on_hover_text(anew).clicked() {
                     let sets = self.assignments();
                     self.files.put_in(sets);
                 }
+                ui.colored_label(RED, RichText::new(&refusal.reason).monospace());
             }
             if let Some((text, bad)) = self.news.clone() {
                 ui.horizontal_top(|ui| {

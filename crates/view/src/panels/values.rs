@@ -53,6 +53,11 @@ fn groups(scene: &SceneFile) -> Vec<(String, Vec<Value>)> {
     all
 }
 
+/// A number as a scene has it: counts have no point.
+fn word(number: f64) -> String {
+    if number.fract() == 0.0 && number.abs() < 1e15 { format!("{number:.0}") } else { format!("{number:?}") }
+}
+
 /// All numbers in a value.
 fn numbers(node: &Node, path: &Path, text: &str, values: &mut Vec<Value>) {
     match &node.kind {
@@ -111,7 +116,7 @@ impl App {
                                 value.now = now;
                             }
                             if ended {
-                                sent.push((value.path.clone(), format!("{now:?}")));
+                                sent.push((value.path.clone(), word(now)));
                             }
                         });
                     }
@@ -147,7 +152,7 @@ mod tests {
         assert_eq!(value("duration"), Some(1.0));
         // each of them can be set
         for value in &all {
-            let set = format!("{}={:?}", value.path, value.now);
+            let set = format!("{}={}", value.path, word(value.now));
             let again = SceneFile::from_text("cube.ron", text, std::path::Path::new(""), std::slice::from_ref(&set));
             assert_eq!(again.unwrap().scene, scene.scene, "{set}");
         }

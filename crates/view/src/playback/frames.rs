@@ -23,6 +23,8 @@ pub struct Frames {
     rest: Vec<Vec3>,
     /// The points of each body.
     points: Vec<Range<usize>>,
+    /// Whether displacements were written.
+    pub moves: bool,
     /// Which elements of each body are there, and since when.
     alive: Vec<(Arc<Vec<u8>>, u64)>,
 }
@@ -91,7 +93,8 @@ impl Frames {
         };
         let found = own.into_iter().zip(&points).enumerate().map(of_body).collect();
         let skins = Skins::open(folder);
-        Ok((Self { series, skins, whole, homes, rest, points, alive: Vec::new() }, found))
+        let moves = first.entry(FieldAssociation::Points, "displacement").is_some();
+        Ok((Self { series, skins, whole, homes, rest, points, moves, alive: Vec::new() }, found))
     }
 
     /// The bodies in a frame, with the numbers of a field and vectors for arrows where it has them.

@@ -66,6 +66,7 @@ impl Playback {
         let (frames, bodies) = Frames::open(folder, &bodies, &materials).map_err(|error| at(&error))?;
         let (tools, _) = Tools::of_scene(&scene, folder);
         let (curves, probes) = Curves::read(folder, scene.scene.probes.keys());
+        let still = "the run did not write displacements (output.fields): bodies are seen where they rest";
         let loaded = Loaded {
             number: 0,
             backend: format!("a finished run, {} frames", frames.series.frames.len()),
@@ -73,7 +74,7 @@ impl Playback {
             bodies,
             probes,
             critical: Vec::new(),
-            warnings: Vec::new(),
+            warnings: if frames.moves { Vec::new() } else { vec![still.into()] },
         };
         let mut playback = Self {
             frames,
