@@ -1,4 +1,4 @@
-//! Films: pictures in the course of simulated time, as a GIF, as a series of PNG files, or as MP4 by the program ffmpeg.
+//! Films: pictures in the course of simulated time, as a GIF, as PNG files, or as MP4 by the program ffmpeg.
 
 use sinew_pictures::render::{Image, write_gif, write_png};
 use std::fs::File;

@@ -12,8 +12,8 @@ pub use wgpu::Buffer;
 /// ([`Simulation::gpu_column`](crate::Simulation::gpu_column)).
 ///
 /// It stays the program's own. Its handlers of errors and of its loss are left as they are and hear nothing of what the
-/// simulation does wrong, which is the simulation's error; the simulation waits for its own submissions only, and each
-/// of them takes no longer than 8 ms, so that a window goes on moving.
+/// simulation does wrong, which is the simulation's error; the simulation waits for its own submissions only, and aims
+/// at 8 ms of work in each of them, so that a window goes on moving.
 #[derive(Clone, Debug)]
 pub struct Host {
     /// What the device was opened of.

@@ -1,4 +1,4 @@
-//! Bodies that are drawn from where their nodes are on the device: their corners are made once, and a kernel moves them.
+//! Bodies that are drawn from where their nodes are on the device: corners are made once, and a kernel moves them.
 
 use super::triangles::{self, Corner, Surface};
 use sinew::GpuColumn;

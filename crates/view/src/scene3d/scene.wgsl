@@ -180,8 +180,8 @@ fn noise(place: vec3f) -> f32 {
     return mix(low, high, s.z);
 }
 
-// The gloss of a wet film: a lamp mirrored sharply, one mirrored in a rougher layer below, and the room at the rim. What
-// is too fine for a pixel to be seen as waves of the film (0 to 1) makes its mirror dull: as bright, and wider.
+// The gloss of a wet film: a lamp mirrored sharply, one mirrored in a rougher layer below, and the room at the rim.
+// What is too fine for a pixel to be seen as waves of the film (0 to 1) makes its mirror dull: as bright, and wider.
 fn film(normal: vec3f, light: vec2f, dull: f32) -> f32 {
     let mirrored = 2.0 * normal.z * normal - vec3f(0, 0, 1);
     let rim = 0.04 + 0.96 * pow(1.0 - clamp(normal.z, 0.0, 1.0), 5.0);
