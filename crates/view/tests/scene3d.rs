@@ -6,9 +6,9 @@ use sinew::driver::{Command, Session, State};
 use sinew::scene::schema::OutputField;
 use sinew::{BackendChoice, Folder, Options, SceneFile, Simulation};
 use sinew_pictures::render::{Camera, Image, Picture, View, paint, write_png};
-use sinew_view::{Settings, Start, headless};
 use sinew_view::scene3d::{Look, Scene, Scene3d};
 use sinew_view::surfaces::Scenery;
+use sinew_view::{Settings, Start, headless};
 use std::path::{Path, PathBuf};
 
 const SIZE: (u32, u32) = (480, 360);

@@ -26,7 +26,8 @@ pub fn pick(bodies: &[Body], states: &[BodyState], origin: DVec3, direction: DVe
                 let heaviest = (0..3).max_by(|&a, &b| weights[a].total_cmp(&weights[b])).unwrap_or(0);
                 let (node, element) = (nodes[heaviest], face.cell as usize);
                 let [p, q, r] = nodes.map(place);
-                let material = body.element_materials.get(element).and_then(|place| body.materials.get(*place as usize));
+                let material =
+                    body.element_materials.get(element).and_then(|place| body.materials.get(*place as usize));
                 let pick = Pick {
                     body: body.name.clone(),
                     element: body.elements.of(element),
