@@ -54,15 +54,15 @@ pub use bevy_ecs;
 pub use glam;
 pub use serde;
 
-pub use backend::gpu::NoGpu;
+pub use backend::gpu::{Host, NoGpu};
 pub use error::{Error, GpuFailure, Instability, NotConverged, NotUnloaded};
 pub use output::Folder;
 pub use scene::SceneFile;
 pub use simulation::explain;
 pub use simulation::{
-    Advanced, BackendChoice, ColumnView, Ended, Equilibrium, FieldName, Grab, GrabId, Grip, ImplicitSteps, InputChange,
-    InputRecording, InputUse, InputValue, Inversions, Mode, Names, NodeSet, NodeState, Options, Pick, PortUse,
-    PoseChange, Preload, RealTime, Simulation, Stability, StepHistory, Summary, SurfaceContactUse, SystemTime,
+    Advanced, BackendChoice, ColumnView, Ended, Equilibrium, FieldName, GpuColumn, Grab, GrabId, Grip, ImplicitSteps,
+    InputChange, InputRecording, InputUse, InputValue, Inversions, Mode, Names, NodeSet, NodeState, Options, Pick,
+    PortUse, PoseChange, Preload, RealTime, Simulation, Stability, StepHistory, Summary, SurfaceContactUse, SystemTime,
     Unloaded, Unloading, UnloadingStep, unload,
 };
 pub use snapshot::Snapshot;

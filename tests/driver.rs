@@ -208,3 +208,25 @@ fn a_hand_pulls_until_it_lets_go_and_its_work_is_in_the_balance() {
     session.command(Command::Grab { hand: 2, origin: DVec3::new(5.0, 5.0, 1.0), direction: DVec3::NEG_Z });
     assert!(session.state().held.is_empty() && session.state().refusal.is_none());
 }
+
+#[test]
+fn states_have_arrows_materials_sets_and_the_elements_that_set_the_step() {
+    let mut session = session(FALL);
+    session.command(Command::Arrows(Some(OutputField::Reaction)));
+    session.command(Command::Step(30));
+    let state = session.state();
+    let (loaded, body) = (state.loaded.as_ref().unwrap(), &state.bodies[0]);
+    let about = &loaded.bodies[0];
+    assert_eq!(body.arrows.len(), about.rest.len());
+    // what bears it stands at the nodes that are held
+    for (arrow, axes) in body.arrows.iter().zip(&about.constrained) {
+        assert_eq!(arrow[2] != 0.0, *axes != 0, "{arrow:?}");
+    }
+    let held: Vec<u32> = (0..).zip(&about.constrained).filter(|(_, axes)| **axes != 0).map(|(node, _)| node).collect();
+    assert_eq!(about.sets["z0"], held);
+    assert_eq!((about.materials.as_slice(), about.element_materials.len()), (&["m".to_string()][..], 27));
+    assert!((1..=10).contains(&loaded.critical.len()));
+    assert!(loaded.critical.iter().all(|critical| critical.body == "b" && critical.bound >= 1e-3));
+    session.command(Command::Arrows(Some(OutputField::VonMises)));
+    assert!(session.state().refusal.unwrap().reason.contains("von_mises has no vectors of nodes"));
+}

@@ -113,6 +113,7 @@ pub(super) fn spawn(
         element_ids: mesh.element_ids.clone(),
         cells: mesh.cells.clone(),
         blocks: blocks.clone(),
+        sets: if copies > 1 { BTreeMap::new() } else { mesh.nodes_of_sets() },
     };
     super::body_columns::insert_node_columns(assembly, name, mesh, &node_rows, &authoring, world, body);
     world.entity_mut(body).insert(authoring);

@@ -1,7 +1,7 @@
 //! A run on the GPU: where the truth of each column lies, and what travels.
 
 use super::Buffers;
-use super::gpu::{BufferKind, Gpu, GpuLimits};
+use super::gpu::{Buffer, BufferKind, Gpu, GpuLimits};
 use super::kernel::{BindingKind, BufferId, Composed, Kernel, KernelError, KernelId, MostBuffers};
 use crate::components::*;
 use crate::error::Error;
@@ -147,6 +147,12 @@ impl Device {
             }
         }
         Ok(())
+    }
+
+    /// The buffer of a column, and its bytes there.
+    pub fn lend(&self, entity: Entity, name: &'static str) -> Option<(Buffer, Range<u64>)> {
+        let column = self.columns.get(&(entity, name))?;
+        Some((self.gpu.lend(column.buffer)?, column.place.clone()))
     }
 
     fn upload(&mut self, world: &World, key: Key) -> Result<(), Error> {

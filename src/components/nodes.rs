@@ -5,6 +5,7 @@ use super::column::columns;
 use crate::mesh::{Cells, Ids, Mesh, SurfaceFace};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+use std::collections::BTreeMap;
 
 /// Positions at rest (m), always in f64.
 #[derive(Component, Clone, Debug)]
@@ -117,6 +118,9 @@ pub struct Authoring {
     pub cells: Cells,
     /// The body's element blocks.
     pub blocks: Vec<Entity>,
+    /// Sets of the mesh file by name: their nodes, or those of their faces or elements, by places in the author's order
+    /// (ascending, each once). None of a body that is there several times.
+    pub sets: BTreeMap<String, Vec<u32>>,
 }
 
 impl Authoring {

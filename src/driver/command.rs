@@ -58,6 +58,12 @@ pub enum Command {
     },
     /// Which field states have values of; none at first.
     Field(Option<OutputField>),
+    /// Which field of vectors of nodes states have for arrows; none at first.
+    Arrows(Option<OutputField>),
+    /// Whether who looks draws bodies on the GPU from where they are ([`Body::on_gpu`](super::Body::on_gpu)): positions
+    /// and elements that are left are then brought from there for one of four states of a simulation that runs, and
+    /// those between have the last ones.
+    Lend(bool),
     /// Go over to another scene. If that is refused, the old one goes on.
     Load(Box<SceneFile>),
 }

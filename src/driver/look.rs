@@ -2,11 +2,14 @@
 
 use super::grabs::Hands;
 use super::state::{Body, BodyState, Loaded, State, ToolState};
-use crate::components::{Alive, Authoring, Column, ConstrainedAxes, Energies, RestPosition};
+use crate::components::{
+    Alive, Authoring, Block, Column, ConstrainedAxes, Displacement, Energies, Label, RestPosition,
+};
 use crate::error::Error;
 use crate::observation::{ToolReading, field_of, header, way_of};
 use crate::scene::schema::OutputField;
 use crate::{SceneFile, Simulation};
+use bevy_ecs::prelude::*;
 use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -19,6 +22,12 @@ const MEASURED: u64 = 4;
 pub struct Look {
     /// The field that states have values of.
     pub field: Option<OutputField>,
+    /// The field that states have vectors of.
+    pub arrows: Option<OutputField>,
+    /// Whether positions are drawn from where they are on a GPU.
+    pub lends: bool,
+    /// The last ones that were brought from there, by bodies.
+    brought: Vec<BodyState>,
     loaded: Option<Arc<Loaded>>,
     /// Scenes so far, and states of the present one.
     scenes: u64,
@@ -50,11 +59,13 @@ impl Look {
             backend: simulation.backend().into(),
             bodies,
             probes: scene.scene.probes.iter().map(|(name, probe)| (name.clone(), columns(&probe.what))).collect(),
+            critical: simulation.critical_elements().to_vec(),
             warnings: simulation.warnings().lines(),
         };
         (self.loaded, self.states) = (Some(Arc::new(loaded)), 0);
         self.scenes += 1;
         (self.alive, self.measured) = (Vec::new(), Measured::default());
+        self.brought.clear();
         Ok(())
     }
 
@@ -74,9 +85,18 @@ impl Look {
         state.history = simulation.history();
         state.inputs = simulation.inputs();
         state.breakdown = simulation.failure().cloned().map(Box::new);
-        state.field = self.field;
+        (state.field, state.arrows) = (self.field, self.arrows);
+        let lent = self.lends && running && !self.states.is_multiple_of(MEASURED);
         for (number, body) in loaded.bodies.iter().enumerate() {
-            state.bodies.push(self.body(number, &body.name, simulation)?);
+            let last = self.brought.get(number).filter(|_| lent && body.on_gpu.is_some());
+            let now = match last {
+                Some(last) => last.clone(),
+                None => self.body(number, &body.name, simulation)?,
+            };
+            state.bodies.push(now);
+        }
+        if self.lends && !lent {
+            self.brought.clone_from(&state.bodies);
         }
         state.held = hands.states(simulation, |name, node| {
             let number = loaded.bodies.iter().position(|body| body.name == name);
@@ -103,7 +123,12 @@ impl Look {
             Some(field) => field_of(field, entity, world)?,
             None => (Vec::new(), 0),
         };
-        crate::backend::device::bring_to_host(world, |of, name| of == entity || name == Alive::NAME)?;
+        let arrows = match self.arrows {
+            Some(field) => field_of(field, entity, world)?.0,
+            None => Vec::new(),
+        };
+        let arrows = arrows.as_chunks().0.to_vec();
+        crate::backend::device::bring_to_host(world, |_, name| name == Alive::NAME)?;
         let mut alive = Vec::new();
         let mut positions = Vec::new();
         if let (Some(authoring), Some(rest)) = (world.get::<Authoring>(entity), world.get::<RestPosition>(entity)) {
@@ -122,7 +147,7 @@ impl Look {
         let skinned = simulation.scene().bodies.get(name).is_some_and(|body| body.skin.is_some());
         let skin = if skinned { Some(simulation.skin(name)?) } else { None };
         let (alive, topology) = self.alive[number].clone();
-        Ok(BodyState { positions, alive, topology, values, components, skin })
+        Ok(BodyState { positions, alive, topology, values, components, arrows, skin })
     }
 
     /// Takes energies, probes and what tools feel where that is due.
@@ -153,12 +178,25 @@ impl Look {
 fn body(name: &str, simulation: &mut Simulation) -> Result<Body, Error> {
     let entity = simulation.body(name)?;
     let rest = simulation.rest_positions(name)?;
+    let on_gpu = simulation.gpu_column::<Displacement>(name)?;
     let world = simulation.world();
     let authoring =
         world.get::<Authoring>(entity).cloned().ok_or_else(|| crate::error::missing("a body's numbering"))?;
     let axes = world.get::<ConstrainedAxes>(entity);
     let constrained = |row: &u32| axes.map_or(0, |axes| axes[*row as usize]);
+    let label = |block: &Entity| world.get::<Label>(world.get::<Block>(*block)?.material);
+    let of_block = |block: &Entity| label(block).map(|label| label.0.clone()).unwrap_or_default();
+    let of_blocks: Vec<String> = authoring.blocks.iter().map(of_block).collect();
+    let mut materials = of_blocks.clone();
+    materials.sort_unstable();
+    materials.dedup();
+    let place = |(block, _): &(u32, u32)| materials.binary_search(&of_blocks[*block as usize]).unwrap_or(0) as u32;
+    let element_materials = authoring.element_rows.iter().map(place).collect();
     Ok(Body {
+        element_materials,
+        materials,
+        on_gpu,
+        sets: authoring.sets,
         name: name.into(),
         rest: rest.into_iter().map(|place| place.as_vec3().to_array()).collect(),
         constrained: authoring.node_rows.iter().map(constrained).collect(),

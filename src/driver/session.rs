@@ -128,6 +128,17 @@ impl Session {
                 self.look.field = field;
                 return Ok(());
             }
+            Command::Arrows(Some(field)) if !field.is_of_nodes() || field.components() != 3 => {
+                return Err(Error::Options(format!("{} has no vectors of nodes", field.array())));
+            }
+            Command::Lend(lends) => {
+                self.look.lends = lends;
+                return Ok(());
+            }
+            Command::Arrows(field) => {
+                self.look.arrows = field;
+                return Ok(());
+            }
             _ => {}
         }
         let Some(run) = &mut self.run else {
@@ -164,7 +175,7 @@ impl Session {
             Command::MoveGrab { hand, target } => run.hands.move_to(hand, target, &mut run.simulation)?,
             Command::Release { hand } => run.hands.release(hand, &mut run.simulation)?,
             Command::Pick { origin, direction } => run.picked = picked(&mut run.simulation, origin, direction)?,
-            Command::Load(_) | Command::Speed(_) | Command::Field(_) => {}
+            Command::Load(_) | Command::Speed(_) | Command::Field(_) | Command::Arrows(_) | Command::Lend(_) => {}
         }
         Ok(())
     }
@@ -194,6 +205,8 @@ fn name_of(command: &Command) -> &'static str {
         Command::Grab { .. } | Command::MoveGrab { .. } | Command::Release { .. } => "grab",
         Command::Pick { .. } => "pick",
         Command::Field(_) => "field",
+        Command::Arrows(_) => "arrows",
+        Command::Lend(_) => "lend",
         Command::Load(_) => "load",
     }
 }

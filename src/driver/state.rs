@@ -1,11 +1,13 @@
 //! What is seen of a simulation at one moment.
 
+use crate::assembly::CriticalElement;
 use crate::components::Energies;
 use crate::mesh::{Cells, Ids};
 use crate::observation::{SkinState, ToolReading};
 use crate::scene::schema::OutputField;
-use crate::{InputValue, Instability, Pick, SceneFile};
+use crate::{GpuColumn, InputValue, Instability, Pick, SceneFile};
 use glam::{DQuat, DVec3};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A simulation at one moment. Positions are rounded to f32, what drawing takes.
@@ -17,6 +19,8 @@ pub struct State {
     pub bodies: Vec<BodyState>,
     /// The field whose values bodies have.
     pub field: Option<OutputField>,
+    /// The field whose vectors bodies have for arrows.
+    pub arrows: Option<OutputField>,
     /// Time (s).
     pub time: f64,
     /// Δt (s).
@@ -68,6 +72,8 @@ pub struct Loaded {
     pub bodies: Vec<Body>,
     /// Its probes: name, and of each number name and unit, "ux (m)".
     pub probes: Vec<(String, Vec<String>)>,
+    /// The elements that set the stable step, the smallest first: at most ten.
+    pub critical: Vec<CriticalElement>,
     /// What is not wrong with the scene but should be known.
     pub warnings: Vec<String>,
 }
@@ -85,6 +91,14 @@ pub struct Body {
     pub nodes: Ids,
     /// The author's numbers of elements.
     pub elements: Ids,
+    /// The names of its materials.
+    pub materials: Vec<String>,
+    /// The place of each element's material among those.
+    pub element_materials: Vec<u32>,
+    /// Sets of the mesh file by name: their nodes, or those of their faces or elements.
+    pub sets: BTreeMap<String, Vec<u32>>,
+    /// Where its displacements are on the GPU, if it is there.
+    pub on_gpu: Option<GpuColumn>,
     /// Along which axes each node is held or moved as told: bits 0, 1, 2 for x, y, z.
     pub constrained: Vec<u32>,
 }
@@ -102,6 +116,8 @@ pub struct BodyState {
     pub values: Vec<f32>,
     /// How many numbers there are of each.
     pub components: usize,
+    /// The vectors for arrows, in the author's order of nodes; empty without.
+    pub arrows: Vec<[f32; 3]>,
     /// The skin, if it has one.
     pub skin: Option<SkinState>,
 }

@@ -104,6 +104,22 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// The nodes of all sets by their names, each once.
+    pub(crate) fn nodes_of_sets(&self) -> BTreeMap<String, Vec<u32>> {
+        let mut all: BTreeMap<String, BTreeSet<u32>> = BTreeMap::new();
+        for (name, nodes) in &self.node_sets {
+            all.entry(name.clone()).or_default().extend(nodes);
+        }
+        for (name, faces) in &self.face_sets {
+            all.entry(name.clone()).or_default().extend(faces.as_flattened());
+        }
+        for (name, elements) in &self.element_sets {
+            let nodes = elements.iter().flat_map(|element| self.element(*element as usize));
+            all.entry(name.clone()).or_default().extend(nodes);
+        }
+        all.into_iter().map(|(name, nodes)| (name, nodes.into_iter().collect())).collect()
+    }
+
     /// Keeps a list of points by their numbers, if the mesh has all of them.
     #[doc(hidden)]
     pub fn keep_list(&mut self, numbers: &[u64], rows: &HashMap<u64, usize>) {

@@ -53,6 +53,12 @@ impl Simulation {
         self.world.resource::<Clock>().time_step
     }
 
+    /// The elements that set the stable step at the start, the smallest first: at most ten.
+    #[doc(hidden)]
+    pub fn critical_elements(&self) -> &[crate::assembly::CriticalElement] {
+        &self.facts.stability.bound.worst
+    }
+
     /// What is not wrong with the scene but should be known.
     pub fn warnings(&self) -> &Diagnostics {
         &self.facts.warnings

@@ -1,7 +1,7 @@
 //! How to run a scene: what is not the scene's business.
 
 use crate::backend::cpu::Instructions;
-use crate::backend::gpu::{Choice, Gpu, NoGpu, SmallerLimits};
+use crate::backend::gpu::{Choice, Gpu, Host, NoGpu, SmallerLimits};
 use crate::components::{Precision, Scheme};
 use crate::error::Error;
 
@@ -30,6 +30,8 @@ pub struct Options {
     pub instructions: Instructions,
     /// Which GPU, when there are several.
     pub gpu: Choice,
+    /// A device that the program has opened already, to run on in place of one of our own, if it is what is wanted.
+    pub host: Option<Host>,
     /// How element forces are summed; `None`: patch by patch, but in two passes where a GPU has too few patches to work
     /// on at once.
     pub scheme: Option<Scheme>,
@@ -58,7 +60,10 @@ pub(super) fn choose(options: &Options, of_the_cpu: Option<[String; 2]>) -> Resu
         _ => {}
     }
     let open = |choice: &Choice| {
-        let mut gpu = Gpu::open(choice)?;
+        let mut gpu = match &options.host {
+            Some(host) => Gpu::adopt(host.clone(), choice)?,
+            None => Gpu::open(choice)?,
+        };
         gpu.keep_to(options.gpu_limits);
         Ok(gpu)
     };

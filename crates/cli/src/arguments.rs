@@ -55,7 +55,7 @@ pub enum Command {
     /// Draw a scene or the output of a run
     #[command(after_help = STATUSES)]
     Render(RenderArguments),
-    /// Look at a scene while it runs, and pull at it, in a window of sinew-view
+    /// Look at a scene while it runs, and pull at it, or at the output of a run, in a window of sinew-view
     View(ViewArguments),
     /// Show what a mesh is and where it lies: extents, sets, quality, likely units; of a mesh file or of a scene's
     /// bodies

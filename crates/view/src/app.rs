@@ -1,22 +1,26 @@
 //! The viewer: a driver, what is seen of it, and what the user asks for.
 
 use crate::camera::Orbit;
-use crate::files::{Files, free_name};
+use crate::files::{Files, Opened, free_name};
+use crate::films::Films;
 use crate::marks::Marks;
 use crate::mouse::{Drag, Frame};
-use crate::panels::KEYS;
-use crate::scene3d::{Look, Scene, Scene3d};
+use crate::panels::{KEYS, Values};
+use crate::playback::Playback;
+use crate::scene3d::Scene3d;
 use crate::settings::Settings;
 use crate::shot::Shot;
+use crate::source::Source;
+use crate::stage;
 use crate::surfaces::Scenery;
 use crate::traces::Traces;
 use eframe::egui_wgpu::RenderState;
 use egui::{CentralPanel, Color32, Key, Rect, Sense, Ui, pos2};
 use glam::Vec3;
 use sinew::Options;
-use sinew::driver::{Command, Driver, State};
+use sinew::driver::{Command, State};
 use sinew::scene::schema::OutputField;
-use sinew_pictures::render::{Extent, View, write_png};
+use sinew_pictures::render::{View, write_png};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -39,7 +43,7 @@ pub struct Start {
 
 /// The viewer.
 pub struct App {
-    pub(crate) driver: Driver,
+    pub(crate) source: Source,
     pub(crate) state: Arc<State>,
     pub(crate) settings: Settings,
     pub(crate) orbit: Orbit,
@@ -56,10 +60,16 @@ pub struct App {
     pub(crate) shows_keys: bool,
     pub(crate) shows_plots: bool,
     pub(crate) wants_picture: bool,
-    files: Files,
+    /// The numbers of the scene.
+    pub(crate) values: Values,
+    pub(crate) films: Films,
+    pub(crate) files: Files,
+    /// How simulations run.
+    options: Options,
+    context: egui::Context,
     picture: Option<Picture>,
-    /// The field that the driver was asked for.
-    asked: Option<OutputField>,
+    /// The field and the arrows that were asked for.
+    asked: [Option<OutputField>; 2],
     /// Whether the camera has gone to where it broke down.
     been_there: bool,
     shot: Option<Shot>,
@@ -75,8 +85,11 @@ struct Picture {
 impl App {
     /// Starts; without a device (`screen`) all is there but the picture.
     pub fn new(context: &egui::Context, start: Start, screen: Option<RenderState>) -> Self {
-        let wake = context.clone();
-        let driver = Driver::start(start.options, move || wake.request_repaint());
+        let mut source = Source::live(&start.options, context);
+        let lends = start.options.host.is_some();
+        if lends {
+            source.send(Command::Lend(true));
+        }
         let picture = screen.map(|screen| {
             let scene3d = Scene3d::new(screen.device.clone(), screen.queue.clone(), (1, 1));
             let filter = wgpu::FilterMode::Linear;
@@ -84,11 +97,11 @@ impl App {
             Picture { screen, scene3d, texture }
         });
         let mut app = Self {
-            state: driver.state(),
-            driver,
+            state: source.state(),
+            source,
             settings: start.settings,
             orbit: Orbit::of(&View::upright(Vec3::new(1.0, -2.0, 0.8))),
-            scenery: Scenery::default(),
+            scenery: Scenery::new(lends, None),
             traces: Traces::default(),
             drag: None,
             to_fit: true,
@@ -98,15 +111,19 @@ impl App {
             shows_keys: false,
             shows_plots: false,
             wants_picture: false,
+            values: Values::default(),
+            films: Films::default(),
             files: Files::new(start.scene, start.sets),
+            options: start.options,
+            context: context.clone(),
             picture,
-            asked: None,
+            asked: [None; 2],
             been_there: false,
             shot: start.shot,
         };
         app.read_scene();
         if start.run {
-            app.driver.send(Command::Run);
+            app.source.send(Command::Run);
         }
         app
     }
@@ -124,11 +141,13 @@ impl App {
     /// Shows all of it.
     pub fn show(&mut self, ui: &mut Ui) {
         self.read_scene();
-        self.state = self.driver.state();
+        self.state = self.source.state();
         if self.scenery.follow(&self.state) {
             self.begin();
         }
-        self.traces.note(&self.state);
+        if self.source.finished().is_none() {
+            self.traces.note(&self.state);
+        }
         ui.ctx().set_visuals(if self.settings.dark { egui::Visuals::dark() } else { egui::Visuals::light() });
         let dropped = ui.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
         if let Some(path) = dropped {
@@ -137,10 +156,13 @@ impl App {
         self.keys(ui);
         self.panels(ui);
         CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.picture(ui));
-        if self.settings.field != self.asked {
-            self.asked = self.settings.field;
-            self.driver.send(Command::Field(self.asked));
+        let wanted = [self.settings.field, self.settings.arrows];
+        if wanted != self.asked {
+            self.asked = wanted;
+            self.source.send(Command::Field(wanted[0]));
+            self.source.send(Command::Arrows(wanted[1]));
         }
+        self.follow_film(ui.ctx());
         if self.state.breakdown.is_none() {
             self.been_there = false;
         } else if !self.been_there {
@@ -156,13 +178,47 @@ impl App {
 
     fn read_scene(&mut self) {
         match self.files.poll() {
-            Some(Ok(scene)) => {
+            Some(Ok(Opened::Scene(scene))) => {
                 self.news = None;
-                self.driver.send(Command::Load(Box::new(scene)));
+                if self.source.finished().is_some() {
+                    self.go_over(Source::live(&self.options, &self.context));
+                }
+                self.source.send(Command::Load(scene));
             }
+            Some(Ok(Opened::Run(folder))) => match Playback::open(&folder) {
+                Ok(run) => {
+                    self.news = None;
+                    self.go_over(Source::Finished(Box::new(run)));
+                    self.scenery.folder = Some(folder);
+                }
+                Err(text) => self.news = Some((text, true)),
+            },
             Some(Err(mistakes)) => self.news = Some((mistakes, true)),
             None => {}
         }
+    }
+
+    /// Goes over to where other states come from.
+    fn go_over(&mut self, source: Source) {
+        let lends = self.options.host.is_some();
+        self.source = source;
+        if lends && self.source.finished().is_none() {
+            self.source.send(Command::Lend(true));
+        }
+        self.scenery = Scenery::new(lends, None);
+        (self.traces, self.values, self.asked) = (Traces::default(), Values::default(), [None; 2]);
+    }
+
+    /// The device of the picture, and its size (pixels).
+    pub(crate) fn screen(&self) -> Option<(wgpu::Device, wgpu::Queue, (u32, u32))> {
+        let picture = self.picture.as_ref()?;
+        Some((picture.screen.device.clone(), picture.screen.queue.clone(), picture.scene3d.size()))
+    }
+
+    /// What files that are written are called.
+    pub(crate) fn file_stem(&self) -> String {
+        let stem = self.files.path().and_then(|path| path.file_stem()).map(|stem| stem.to_string_lossy().into_owned());
+        stem.filter(|stem| !stem.is_empty()).unwrap_or_else(|| "sinew".into())
     }
 
     /// Begins with a scene: the first one is seen as its picture would be.
@@ -175,7 +231,7 @@ impl App {
     }
 
     pub(crate) fn run_or_pause(&mut self) {
-        self.driver.send(if self.state.running { Command::Pause } else { Command::Run });
+        self.source.send(if self.state.running { Command::Pause } else { Command::Run });
     }
 
     fn keys(&mut self, ui: &Ui) {
@@ -189,15 +245,18 @@ impl App {
         let settings = &mut self.settings;
         for key in pressed {
             match key {
-                Key::Space => self.driver.send(if self.state.running { Command::Pause } else { Command::Run }),
-                Key::ArrowRight => self.driver.send(Command::Step(if shift { 100 } else { 1 })),
-                Key::R => self.driver.send(Command::Reset),
+                Key::Space => self.source.send(if self.state.running { Command::Pause } else { Command::Run }),
+                Key::ArrowRight => self.source.send(Command::Step(if shift { 100 } else { 1 })),
+                Key::R => self.source.send(Command::Reset),
                 Key::F => self.to_fit = true,
                 Key::W => settings.wireframe = !settings.wireframe,
                 Key::G => settings.ghost = !settings.ghost,
                 Key::C => settings.cut = !settings.cut,
                 Key::S => settings.supports = !settings.supports,
                 Key::D => settings.dark = !settings.dark,
+                Key::L => {
+                    settings.arrows = if settings.arrows.is_some() { None } else { Some(OutputField::ExternalForce) }
+                }
                 Key::P => self.wants_picture = true,
                 Key::T if settings.field.is_some() => settings.field = None,
                 Key::T => settings.field = self.last_field.or(Some(OutputField::VonMises)),
@@ -222,29 +281,9 @@ impl App {
         let camera = self.orbit.camera(frame.size());
         let painter = ui.painter_at(rect);
         if let Some(picture) = &mut self.picture {
-            let surfaces = drawn.surfaces(&camera);
-            let table = drawn.has_table(&surfaces);
-            let up = self.state.loaded.as_ref().map_or(Vec3::Z, |loaded| View::from(&loaded.scene.scene.picture).up);
-            let up = up.normalize_or(Vec3::Z);
-            let settings = &self.settings;
-            let look = Look {
-                wet: settings.wet,
-                shadows: settings.shadows,
-                ground: !table && camera.eye().dot(up) > lowest(&drawn.bodies, up),
-                dark: settings.dark,
-                scale: frame.scale,
-                tissues,
-            };
-            let ground = (up, lowest(&drawn.bodies, up));
-            let scene = Scene {
-                surfaces: &surfaces,
-                scale: drawn.scale,
-                plane: drawn.plane,
-                bodies: drawn.bodies,
-                ground,
-                look,
-            };
-            picture.draw(&scene, &camera, frame.size());
+            picture.resize(frame.size());
+            let seen = (&*self.state, &self.settings, &tissues[..]);
+            stage::paint(&mut picture.scene3d, &drawn, &camera, seen, frame.scale);
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             painter.image(picture.texture, rect, whole, Color32::WHITE);
         }
@@ -258,8 +297,7 @@ impl App {
 
     /// Writes the picture beside where the viewer was started.
     fn write_picture(&mut self) {
-        let stem = self.files.path().and_then(|path| path.file_stem()).map(|stem| stem.to_string_lossy().into_owned());
-        let path = free_name(Path::new(""), stem.as_deref().unwrap_or("sinew"), "png");
+        let path = free_name(Path::new(""), &self.file_stem(), "png");
         self.news = Some(match self.picture.as_ref().and_then(|picture| picture.scene3d.picture()) {
             None => ("there is no picture without a graphics device; `sinew render` draws without one".into(), true),
             Some(image) => match write_png(&path, &image) {
@@ -268,53 +306,17 @@ impl App {
             },
         });
     }
-
-    /// Looks at the element in which the simulation broke down.
-    pub(crate) fn go_to_breakdown(&mut self) {
-        let state = self.state.clone();
-        let place = state.breakdown.as_ref().and_then(|broken| {
-            let loaded = state.loaded.as_ref()?;
-            let number = loaded.bodies.iter().position(|body| body.name == broken.body)?;
-            let (body, now) = (&loaded.bodies[number], state.bodies.get(number)?);
-            let wanted = broken.criterion.element?;
-            let element = (0..body.cells.len()).find(|place| body.elements.of(*place) == wanted)?;
-            let nodes = body.cells.nodes(element);
-            let mean = |places: &[[f32; 3]]| {
-                let sum =
-                    nodes.iter().filter_map(|node| places.get(*node as usize)).map(|place| Vec3::from_array(*place));
-                sum.sum::<Vec3>() / nodes.len() as f32
-            };
-            let mut extent = Extent::NOTHING;
-            body.rest.iter().for_each(|place| extent.add(Vec3::from_array(*place)));
-            // where it is no longer anywhere, it was
-            let there = Some(mean(&now.positions)).filter(|place| extent.grown(0.5).has(*place));
-            Some((there.unwrap_or_else(|| mean(&body.rest)), extent.diagonal()))
-        });
-        if let Some((place, size)) = place {
-            self.orbit.go_to(place, 1.5 * size);
-        }
-    }
-}
-
-/// Where the lowest corner of an extent is along a direction (m).
-fn lowest(extent: &Extent, up: Vec3) -> f32 {
-    if extent.is_nothing() {
-        return 0.0;
-    }
-    let corner = Vec3::select(up.cmpgt(Vec3::ZERO), extent.low, extent.high);
-    corner.dot(up)
 }
 
 impl Picture {
-    /// Draws a scene into a picture of a size (pixels).
-    fn draw(&mut self, scene: &Scene<'_>, camera: &sinew_pictures::render::Camera, size: glam::Vec2) {
+    /// Goes over to a size (pixels).
+    fn resize(&mut self, size: glam::Vec2) {
         if self.scene3d.resize((size.x as u32, size.y as u32)) {
             let mut renderer = self.screen.renderer.write();
             let filter = wgpu::FilterMode::Linear;
             let (device, texture) = (&self.screen.device, self.scene3d.texture());
             renderer.update_egui_texture_from_wgpu_texture(device, texture, filter, self.texture);
         }
-        self.scene3d.draw(scene, camera);
     }
 }
 

@@ -7,7 +7,16 @@ use std::time::{Duration, Instant, SystemTime};
 /// How often the file is looked at.
 const EVERY: Duration = Duration::from_millis(400);
 
-/// A scene's file, which may change.
+/// What a file or folder has in it.
+#[derive(Debug)]
+pub enum Opened {
+    /// A scene.
+    Scene(Box<SceneFile>),
+    /// A run that is over, in a folder.
+    Run(PathBuf),
+}
+
+/// A scene's file, which may change, or the folder of a run.
 #[derive(Debug)]
 pub struct Files {
     path: Option<PathBuf>,
@@ -27,13 +36,19 @@ impl Files {
         self.path.as_deref()
     }
 
+    /// Reads it again with more values put in.
+    pub fn put_in(&mut self, sets: Vec<String>) {
+        self.sets.extend(sets);
+        self.changed = None;
+    }
+
     /// Goes over to another file, without values put in.
     pub fn open(&mut self, path: PathBuf) {
         (self.path, self.sets, self.changed) = (Some(path), Vec::new(), None);
     }
 
     /// The scene, if the file has changed since it was read last, or what is wrong with it.
-    pub fn poll(&mut self) -> Option<Result<SceneFile, String>> {
+    pub fn poll(&mut self) -> Option<Result<Opened, String>> {
         if self.changed.is_some() && self.looked.elapsed() < EVERY {
             return None;
         }
@@ -46,7 +61,11 @@ impl Files {
             return None;
         }
         self.changed = Some(changed);
-        Some(SceneFile::load(path, &self.sets).map_err(|mistakes| mistakes.render(false)))
+        if let Some(folder) = crate::playback::folder_of(path) {
+            return Some(Ok(Opened::Run(folder)));
+        }
+        let scene = SceneFile::load(path, &self.sets).map_err(|mistakes| mistakes.render(false));
+        Some(scene.map(|scene| Opened::Scene(Box::new(scene))))
     }
 }
 
@@ -70,7 +89,15 @@ mod tests {
         let cube = include_str!("../../../scenes/cube_under_gravity.ron");
         std::fs::write(&path, cube).unwrap();
         std::thread::sleep(EVERY);
-        assert_eq!(files.poll().unwrap().unwrap().scene.duration, 1.0);
+        let duration = |opened: Opened| match opened {
+            Opened::Scene(scene) => scene.scene.duration,
+            Opened::Run(_) => f64::NAN,
+        };
+        assert_eq!(duration(files.poll().unwrap().unwrap()), 1.0);
+        files.put_in(vec!["duration=2".into()]);
+        assert_eq!(duration(files.poll().unwrap().unwrap()), 2.0);
+        files.open(path.clone());
+        assert_eq!(duration(files.poll().unwrap().unwrap()), 1.0);
         assert!(files.poll().is_none());
         std::fs::write(&path, cube.replace("duration: 1,", "durations: 1,")).unwrap();
         let later = SystemTime::now() + Duration::from_secs(5);

@@ -5,13 +5,21 @@
 
 mod app;
 mod camera;
+mod elements;
 mod files;
+pub mod film;
+mod films;
+pub mod headless;
 mod marks;
+pub mod measure;
 mod mouse;
 mod panels;
+pub mod playback;
 pub mod scene3d;
 mod settings;
 mod shot;
+mod source;
+mod stage;
 pub mod surfaces;
 mod traces;
 

@@ -2,19 +2,21 @@
 
 use clap::{Parser, ValueEnum};
 use eframe::egui;
+use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use sinew::components::Precision;
 use sinew::scene::schema::OutputField;
-use sinew::{BackendChoice, Options};
-use sinew_view::{App, FIELDS, Settings, Shot, Start};
+use sinew::{BackendChoice, Host, Options};
+use sinew_view::{App, FIELDS, Settings, Shot, Start, headless, measure};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Shows a scene while it runs: look at it from all sides, pull at it, change it.
 #[derive(Parser)]
 #[command(name = "sinew-view", version)]
 struct Arguments {
-    /// The scene; one can be dropped on the window, too.
+    /// The scene, or the folder of a finished run; one can be dropped on the window, too.
     scene: Option<PathBuf>,
     /// Put a value into the scene: --set bodies.cube.mesh.cells=(4, 4, 4)
     #[arg(long = "set", value_name = "PATH=VALUE")]
@@ -40,6 +42,18 @@ struct Arguments {
     /// When to do so, after the start (s)
     #[arg(long, value_name = "SECONDS", default_value_t = 3.0, requires = "shot")]
     after: f64,
+    /// Film it without a window, into a .gif, a .mp4 (by ffmpeg) or a folder of PNG files
+    #[arg(long, value_name = "FILE", conflicts_with = "shot")]
+    film: Option<PathBuf>,
+    /// Simulated seconds a second of the film, and of what is measured
+    #[arg(long, default_value_t = 1.0)]
+    speed: f64,
+    /// Say how long so many frames take without a window, with the body pulled at
+    #[arg(long, value_name = "FRAMES", conflicts_with_all = ["shot", "film"])]
+    frame_times: Option<usize>,
+    /// Width and height of what is drawn without a window (pixels)
+    #[arg(long, value_parser = size, default_value = "1280x800")]
+    size: (u32, u32),
     /// Begin in dark colours.
     #[arg(long)]
     dark: bool,
@@ -50,6 +64,13 @@ enum Backend {
     Auto,
     Cpu,
     Gpu,
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let parts = text.split_once('x').and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
+    parts.filter(|(width, height)| (16..=8192).contains(width) && (16..=8192).contains(height)).ok_or_else(|| {
+        format!("{text:?} is no size: width and height from 16 to 8192 pixels, such as 1280x800, are wanted")
+    })
 }
 
 fn field(name: &str) -> Option<OutputField> {
@@ -73,7 +94,11 @@ fn main() -> ExitCode {
         Backend::Gpu => BackendChoice::Gpu,
     };
     let precision = if arguments.f64 { Precision::F64 } else { Precision::F32 };
-    let start = Start {
+    if arguments.speed.is_nan() || arguments.speed <= 0.0 {
+        eprintln!("sinew-view: --speed {}: it must be above 0", arguments.speed);
+        return ExitCode::from(2);
+    }
+    let mut start = Start {
         options: Options { backend, precision, threads: arguments.threads, ..Options::default() },
         scene: arguments.scene,
         sets: arguments.sets,
@@ -83,10 +108,40 @@ fn main() -> ExitCode {
             .shot
             .map(|path| Shot::new(path, Duration::try_from_secs_f64(arguments.after).unwrap_or_default())),
     };
+    let told = match (&arguments.film, arguments.frame_times) {
+        (Some(film), _) => Some(headless::film(&start, film, arguments.size, arguments.speed)),
+        (None, Some(frames)) => Some(measure::frame_times(&start, frames, arguments.size, arguments.speed)),
+        (None, None) => None,
+    };
+    if let Some(told) = told {
+        return match told {
+            Ok(text) => {
+                println!("{text}");
+                ExitCode::SUCCESS
+            }
+            Err(text) => {
+                eprintln!("sinew-view: {text}");
+                ExitCode::FAILURE
+            }
+        };
+    }
     let viewport = egui::ViewportBuilder::default().with_inner_size([1280.0, 800.0]).with_title("sinew");
-    let options = eframe::NativeOptions { viewport, ..eframe::NativeOptions::default() };
-    let app: eframe::AppCreator<'_> =
-        Box::new(|context| Ok(Box::new(App::new(&context.egui_ctx, start, context.wgpu_render_state.clone()))));
+    let setup = WgpuSetupCreateNew {
+        device_descriptor: Arc::new(Host::device_descriptor),
+        ..WgpuSetupCreateNew::without_display_handle()
+    };
+    let wgpu_options = WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() };
+    let options = eframe::NativeOptions { viewport, wgpu_options, ..eframe::NativeOptions::default() };
+    let app: eframe::AppCreator<'_> = Box::new(|context| {
+        let screen = context.wgpu_render_state.clone();
+        // what is simulated on the window's device is drawn from where it is
+        start.options.host = screen.as_ref().map(|screen| Host {
+            adapter: screen.adapter.clone(),
+            device: screen.device.clone(),
+            queue: screen.queue.clone(),
+        });
+        Ok(Box::new(App::new(&context.egui_ctx, start, screen)))
+    });
     match eframe::run_native("sinew", options, app) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

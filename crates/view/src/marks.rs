@@ -1,5 +1,6 @@
 //! What is drawn over the picture: hands and their forces, supports, what was picked, the colour bar, the axes.
 
+use crate::elements::find;
 use crate::mouse::Frame;
 use crate::panels::number;
 use crate::settings::{Settings, about, components, title};
@@ -14,6 +15,18 @@ const PICKED: Color32 = Color32::from_rgb(40, 190, 255);
 const SUPPORT: Color32 = Color32::from_rgb(36, 120, 210);
 /// So many supports are marked; more would hide what they hold.
 const MOST: usize = 4000;
+
+const SET: Color32 = Color32::from_rgb(150, 70, 200);
+const ARROW: Color32 = Color32::from_rgb(30, 150, 70);
+const CRITICAL: Color32 = Color32::from_rgb(220, 40, 60);
+/// So many arrows are drawn, the longest.
+const MOST_ARROWS: usize = 1500;
+
+/// Where a node is drawn, by where it rests and where it is.
+fn seen(rest: [f32; 3], place: [f32; 3], settings: &Settings) -> Vec3 {
+    let rest = Vec3::from_array(rest);
+    rest + (Vec3::from_array(place) - rest) * settings.deformation
+}
 
 /// Draws over a picture.
 pub struct Marks<'a> {
@@ -32,6 +45,15 @@ impl Marks<'_> {
     pub fn draw(&self, state: &State, settings: &Settings, drawn: &Drawn<'_>) {
         if settings.supports {
             self.supports(state, settings);
+        }
+        if let Some(name) = &settings.set {
+            self.set(state, settings, name);
+        }
+        if settings.arrows.is_some() && state.arrows == settings.arrows {
+            self.arrows(state, settings, drawn.bodies.diagonal());
+        }
+        if settings.critical {
+            self.critical(state);
         }
         self.hands(state);
         self.picked(state);
@@ -54,13 +76,62 @@ impl Marks<'_> {
         for (body, now) in loaded.bodies.iter().zip(&state.bodies) {
             let held = body.constrained.iter().zip(&now.positions).zip(&body.rest).filter(|((axes, _), _)| **axes != 0);
             for ((axes, place), rest) in held.take(MOST) {
-                let rest = Vec3::from_array(*rest);
-                let place = rest + (Vec3::from_array(*place) - rest) * settings.deformation;
-                let Some(at) = self.at(place) else { continue };
+                let Some(at) = self.at(seen(*rest, *place, settings)) else { continue };
                 // fixed along all axes, or along some
                 let fill = if *axes == 7 { SUPPORT } else { Color32::TRANSPARENT };
                 self.painter.circle(at, 2.5, fill, Stroke::new(1.0, SUPPORT));
             }
+        }
+    }
+
+    /// The nodes of a set of the mesh.
+    fn set(&self, state: &State, settings: &Settings, name: &str) {
+        let Some(loaded) = &state.loaded else { return };
+        for (body, now) in loaded.bodies.iter().zip(&state.bodies) {
+            for node in body.sets.get(name).into_iter().flatten().take(MOST) {
+                let (rest, place) = (body.rest.get(*node as usize), now.positions.get(*node as usize));
+                let at = rest.zip(place).and_then(|(rest, place)| self.at(seen(*rest, *place, settings)));
+                if let Some(at) = at {
+                    self.painter.circle_filled(at, 2.5, SET);
+                }
+            }
+        }
+    }
+
+    /// The longest vectors of a field, the longest of them an eighth of the bodies' diagonal (m) long.
+    fn arrows(&self, state: &State, settings: &Settings, diagonal: f32) {
+        let Some(loaded) = &state.loaded else { return };
+        let mut all: Vec<(Vec3, Vec3)> = Vec::new();
+        for (body, now) in loaded.bodies.iter().zip(&state.bodies) {
+            let known = body.rest.iter().zip(&now.positions).zip(&now.arrows);
+            let known = known.map(|((rest, place), arrow)| (seen(*rest, *place, settings), Vec3::from_array(*arrow)));
+            all.extend(known.filter(|(_, arrow)| arrow.is_finite() && *arrow != Vec3::ZERO));
+        }
+        all.sort_by(|a, b| b.1.length_squared().total_cmp(&a.1.length_squared()));
+        let Some(longest) = all.first().map(|(_, arrow)| arrow.length()) else { return };
+        for (place, arrow) in all.into_iter().take(MOST_ARROWS) {
+            let end = place + arrow * (diagonal / (8.0 * longest));
+            let (Some(from), Some(to)) = (self.at(place), self.at(end)) else { continue };
+            self.painter.circle_filled(from, 2.0, ARROW);
+            if from.distance(to) > 3.0 {
+                self.painter.arrow(from, to - from, Stroke::new(1.5, ARROW));
+            }
+        }
+        let unit = settings.arrows.map_or("", |field| field.unit());
+        let text = format!("longest arrow: {} {unit}", number(f64::from(longest)));
+        let at = self.frame.rect.left_top() + vec2(14.0, 14.0);
+        self.painter.text(at, Align2::LEFT_TOP, text, FontId::proportional(13.0), self.colour);
+    }
+
+    /// The elements that set the stable step, the first the largest.
+    fn critical(&self, state: &State) {
+        let critical = state.loaded.iter().flat_map(|loaded| &loaded.critical).enumerate();
+        for (number, critical) in critical {
+            let found = find(state, &critical.body, critical.element);
+            let Some(at) = found.and_then(|found| self.at(found.place)) else { continue };
+            self.painter.circle_stroke(at, if number == 0 { 9.0 } else { 6.0 }, Stroke::new(2.0, CRITICAL));
+            let text = (number + 1).to_string();
+            self.painter.text(at + vec2(9.0, -9.0), Align2::LEFT_BOTTOM, text, FontId::proportional(12.0), CRITICAL);
         }
     }
 

@@ -62,7 +62,7 @@ impl App {
             });
             if let (Some(Drag::Grab(_)), Some(at)) = (self.drag, pressed.or(response.interact_pointer_pos())) {
                 let (origin, direction) = self.ray(at, frame);
-                self.driver.send(Command::Grab { hand: HAND, origin, direction });
+                self.source.send(Command::Grab { hand: HAND, origin, direction });
             }
         }
         let by = response.drag_delta();
@@ -75,7 +75,7 @@ impl App {
         let is_over =
             response.drag_stopped() || (self.drag.is_some() && !response.dragged() && !response.drag_started());
         if is_over && let Some(Drag::Grab(_)) = self.drag.take() {
-            self.driver.send(Command::Release { hand: HAND });
+            self.source.send(Command::Release { hand: HAND });
         }
         if response.hovered() {
             self.orbit.zoom((0.004 * scroll.y).exp() * zoom);
@@ -83,7 +83,7 @@ impl App {
         let at = response.interact_pointer_pos().or_else(|| ui.input(|input| input.pointer.interact_pos()));
         if let Some(at) = at.filter(|_| response.clicked()) {
             let (origin, direction) = self.ray(at, frame);
-            self.driver.send(Command::Pick { origin, direction });
+            self.source.send(Command::Pick { origin, direction });
         }
         if response.double_clicked() {
             self.to_fit = true;
@@ -100,7 +100,7 @@ impl App {
         self.drag = Some(Drag::Grab(depth));
         if let (Some(depth), Some(at)) = (depth, response.interact_pointer_pos()) {
             let target = camera.eye() + camera.ray(frame.pixel(at)) * depth;
-            self.driver.send(Command::MoveGrab { hand: HAND, target: target.into() });
+            self.source.send(Command::MoveGrab { hand: HAND, target: target.into() });
         }
     }
 

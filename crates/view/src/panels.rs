@@ -3,9 +3,12 @@
 mod look;
 mod run;
 mod told;
+mod values;
+
+pub use values::Values;
 
 use crate::app::App;
-use egui::{Key, Panel, ScrollArea, Ui};
+use egui::{CollapsingHeader, Key, Panel, ScrollArea, Ui};
 
 /// A number in as few letters as tell three digits.
 pub fn number(number: f64) -> String {
@@ -21,7 +24,7 @@ pub fn number(number: f64) -> String {
 }
 
 /// Keys and what they do.
-pub const KEYS: [(Key, &str, &str); 12] = [
+pub const KEYS: [(Key, &str, &str); 13] = [
     (Key::Space, "space", "run, pause"),
     (Key::ArrowRight, "arrow right", "one step (with shift: 100)"),
     (Key::R, "R", "back to the start"),
@@ -30,6 +33,7 @@ pub const KEYS: [(Key, &str, &str); 12] = [
     (Key::G, "G", "shape at rest"),
     (Key::C, "C", "cut open"),
     (Key::S, "S", "what is held"),
+    (Key::L, "L", "loads as arrows"),
     (Key::D, "D", "dark, light"),
     (Key::P, "P", "write a picture"),
     (Key::T, "T", "tissue, or the last field"),
@@ -59,12 +63,24 @@ impl App {
                 self.look_panel(ui);
                 self.inputs_panel(ui);
                 self.told_panel(ui);
+                self.more_panels(ui);
             });
         });
         if self.shows_plots {
             Panel::right("plots").resizable(true).default_size(280.0).show(ui, |ui| self.plots_panel(ui));
         }
         self.keys_window(ui);
+    }
+
+    /// What is closed until somebody opens it.
+    fn more_panels(&mut self, ui: &mut Ui) {
+        ui.separator();
+        if self.state.loaded.as_ref().is_some_and(|loaded| !loaded.critical.is_empty()) {
+            CollapsingHeader::new("What sets the step").show(ui, |ui| self.critical_panel(ui));
+        }
+        if self.state.loaded.is_some() && self.source.finished().is_none() {
+            CollapsingHeader::new("Numbers of the scene").show(ui, |ui| self.values_panel(ui));
+        }
     }
 
     fn keys_window(&mut self, ui: &Ui) {

@@ -19,8 +19,16 @@ pub struct Settings {
     pub wireframe: bool,
     /// The shape at rest.
     pub ghost: bool,
+    /// The field whose vectors are drawn as arrows.
+    pub arrows: Option<OutputField>,
     /// What is fixed or moved as told.
     pub supports: bool,
+    /// Elements that are gone.
+    pub removed: bool,
+    /// The elements that set the stable step.
+    pub critical: bool,
+    /// A set of the mesh whose nodes are marked.
+    pub set: Option<String>,
     /// Tools.
     pub tools: bool,
     /// Fine surfaces in place of the bodies' own.
@@ -50,7 +58,11 @@ impl Default for Settings {
             deformation: 1.0,
             wireframe: false,
             ghost: false,
+            arrows: None,
             supports: false,
+            removed: false,
+            critical: false,
+            set: None,
             tools: true,
             skins: true,
             cut: false,
@@ -87,6 +99,15 @@ pub const FIELDS: [OutputField; 21] = [
     OutputField::ContactArea,
     OutputField::ContactGap,
     OutputField::ContactSlip,
+];
+
+/// What can be seen as arrows, and what that is.
+pub const ARROWS: [(OutputField, &str); 5] = [
+    (OutputField::ExternalForce, "loads"),
+    (OutputField::Reaction, "reactions of supports"),
+    (OutputField::ContactForce, "forces of contact"),
+    (OutputField::Velocity, "velocity"),
+    (OutputField::Displacement, "displacement"),
 ];
 
 /// What a field is called.

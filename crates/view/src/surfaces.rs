@@ -9,12 +9,18 @@ use glam::{DVec3, Vec3};
 use sinew::driver::{Loaded, State};
 use sinew::scene::schema::Cut;
 use sinew_pictures::render::{Camera, Extent, Finish, Layer, Lines, Placed, Plane, Scale, SeenValues, Tools};
+use std::hash::{Hash, Hasher};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// What is kept from frame to frame of a scene.
 #[derive(Default)]
 pub struct Scenery {
     loaded: Option<Arc<Loaded>>,
+    /// Whether bodies that are on a GPU are drawn from there: it must be the device of the picture.
+    pub lends: bool,
+    /// The folder of a finished run, which has copies of what its tools look like.
+    pub folder: Option<PathBuf>,
     bodies: Vec<BodyMesh>,
     tools: Tools,
     /// How bodies look.
@@ -25,6 +31,9 @@ pub struct Scenery {
 
 /// What is drawn of a state.
 pub struct Drawn<'a> {
+    loaded: Option<Arc<Loaded>>,
+    /// Another one whenever what is drawn from where it is on the device has other faces.
+    pub key: u64,
     parts: Vec<Part>,
     tools: Vec<Placed<'a>>,
     /// What bodies fill.
@@ -38,6 +47,11 @@ pub struct Drawn<'a> {
 }
 
 impl Scenery {
+    /// Nothing yet; `lends`: whether bodies that are on a GPU are drawn from there.
+    pub fn new(lends: bool, folder: Option<PathBuf>) -> Self {
+        Self { lends, folder, ..Self::default() }
+    }
+
     /// Goes over to the scene of a state: whether it is another one.
     pub fn follow(&mut self, state: &State) -> bool {
         let number = |loaded: &Option<Arc<Loaded>>| loaded.as_ref().map(|loaded| loaded.number);
@@ -47,7 +61,13 @@ impl Scenery {
         self.loaded = state.loaded.clone();
         let Some(loaded) = &self.loaded else { return false };
         self.bodies = loaded.bodies.iter().map(BodyMesh::new).collect();
-        (self.tools, self.missing) = Tools::live(&loaded.scene);
+        for (mesh, body) in self.bodies.iter_mut().zip(&loaded.bodies) {
+            mesh.lends = self.lends && body.on_gpu.is_some();
+        }
+        (self.tools, self.missing) = match &self.folder {
+            Some(folder) => Tools::of_scene(&loaded.scene, folder),
+            None => Tools::live(&loaded.scene),
+        };
         let tissue = |name: &String| {
             let of = loaded.scene.scene.bodies.get(name).map(|body| format!("{name} {:?}", body.material));
             Tissue::of_name(of.as_deref().unwrap_or(name))
@@ -88,7 +108,12 @@ impl Scenery {
         // planes reach far, instruments beyond what is looked at
         let near = state.tools.iter().map(|tool| tool.place.as_vec3()).filter(|place| extent.grown(0.25).has(*place));
         near.for_each(|place| all.add(place));
-        Drawn { parts, tools, bodies: extent, all, scale, plane }
+        let loaded = self.loaded.clone();
+        let mut hasher = std::hash::DefaultHasher::new();
+        loaded.as_ref().map(|loaded| loaded.number).hash(&mut hasher);
+        let lent: Vec<usize> = parts.iter().filter_map(|part| Some(part.lent?.0)).collect();
+        (lent, state.bodies.iter().map(|body| body.topology).collect::<Vec<_>>()).hash(&mut hasher);
+        Drawn { loaded, key: hasher.finish(), parts, tools, bodies: extent, all, scale, plane }
     }
 }
 
@@ -106,12 +131,13 @@ fn plane(settings: &Settings, extent: &Extent) -> Plane {
 impl Drawn<'_> {
     /// The surfaces, as an eye sees them.
     pub fn surfaces(&self, camera: &Camera) -> Vec<Surface<'_>> {
-        let mut surfaces: Vec<Surface<'_>> = self.parts.iter().map(Part::surface).collect();
+        let mut surfaces: Vec<Surface<'_>> =
+            self.parts.iter().map(|part| part.surface(self.loaded.as_deref())).collect();
         let vertices = || self.parts.iter().filter(|part| part.finish != Finish::Ghost).flat_map(|part| &part.vertices);
         let depth = |normal: Vec3| vertices().map(|point| -normal.dot(*point)).fold(f32::MIN, f32::max);
         for placed in &self.tools {
             let layer = placed.layer(camera, &self.bodies, depth);
-            surfaces.push(Surface { layer, rest: &[], normals: &[], tissue: None });
+            surfaces.push(Surface { layer, rest: &[], normals: &[], tissue: None, lent: None });
         }
         surfaces
     }

@@ -5,7 +5,7 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use sinew::driver::State;
-use sinew::{BackendChoice, Options};
+use sinew::{BackendChoice, Folder, Options, SceneFile, Simulation};
 use sinew_view::{App, Start};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -26,14 +26,34 @@ impl Place {
         place
     }
 
+    /// What `sinew run` leaves of it.
+    fn run(&self, more: &str) -> PathBuf {
+        self.write("output: (fields_every: 0.02)", more);
+        let scene = SceneFile::load(&self.scene, &[]).unwrap();
+        let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
+        let mut simulation = Simulation::new(&scene, &options).unwrap();
+        let path = self.folder.path().join("out");
+        let mut folder = Folder::create(&path).unwrap();
+        std::fs::write(folder.claim("scene.ron").unwrap(), scene.text()).unwrap();
+        simulation.write_into(&mut folder).unwrap();
+        simulation.observe().unwrap();
+        simulation.finish().unwrap();
+        simulation.write_nodes(&mut folder).unwrap();
+        path
+    }
+
     fn write(&self, from: &str, to: &str) {
         assert!(self.folder.path().exists());
         std::fs::write(&self.scene, CUBE.replace("(10, 10, 10)", "(3, 3, 3)").replace(from, to)).unwrap();
     }
 
     fn open(&self) -> Harness<'static, Option<App>> {
+        self.open_path(self.scene.clone())
+    }
+
+    fn open_path(&self, path: PathBuf) -> Harness<'static, Option<App>> {
         let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
-        let start = Start { scene: Some(self.scene.clone()), options, ..Start::default() };
+        let start = Start { scene: Some(path), options, ..Start::default() };
         let app = move |ui: &mut egui::Ui, app: &mut Option<App>| {
             app.get_or_insert_with(|| App::new(ui.ctx(), start.clone(), None)).show(ui);
         };
@@ -165,4 +185,84 @@ fn a_file_that_changes_is_read_again_and_a_wrong_one_tells_why_while_the_old_goe
         std::thread::sleep(Duration::from_millis(20));
         harness.step();
     }
+}
+
+#[test]
+fn a_finished_run_is_seen_at_all_of_its_times() {
+    let place = Place::new();
+    let folder = place.run("output: (fields_every: 0.1, energies_every: 0.1, fields: [Displacement, VonMises])");
+    let mut harness = place.open_path(folder);
+    assert_eq!(state(&harness).time, 0.0);
+    harness.get_by_label("a finished run, 11 frames");
+    assert!(state(&harness).bodies[0].positions.iter().all(|place| place[2] >= 0.0));
+    let lowest = |state: &State| state.bodies[0].positions.iter().map(|place| place[2]).fold(0.0f32, f32::max);
+    let top = lowest(state(&harness));
+    press(&mut harness, "Step");
+    wait(&mut harness, "the second frame", |state| state.step == 1 && (0.1..0.11).contains(&state.time));
+    assert!(lowest(state(&harness)) < top, "it sags");
+    harness.get_by_label("frame 2");
+    press(&mut harness, "Run");
+    wait(&mut harness, "its end", |state| state.finished && !state.running);
+    // what is due is written at the end of a step
+    assert!((0.99..1.01).contains(&state(&harness).time), "{}", state(&harness).time);
+    press(&mut harness, "Reset");
+    wait(&mut harness, "its start", |state| state.time == 0.0);
+    harness.key_press(Key::T);
+    wait(&mut harness, "its stresses", |state| state.bodies[0].values.len() == 27);
+    let middle = harness.get_by_label("Picture of the scene").rect().center();
+    pointer(&mut harness, middle, Some(true), Modifiers::NONE);
+    pointer(&mut harness, middle, Some(false), Modifiers::NONE);
+    wait(&mut harness, "a pick", |state| state.picked.as_ref().is_some_and(|picked| picked.material == "tissue"));
+    // what it did not write is told
+    harness.key_press(Key::L);
+    wait(&mut harness, "a refusal", |state| state.refusal.is_some());
+    harness.step();
+    assert!(harness.query_all_by_label_contains("did not write external_force").next().is_some());
+    press(&mut harness, "Plots");
+    harness.get_by_label("top");
+}
+
+#[test]
+fn numbers_of_the_scene_change_while_it_runs_and_what_cannot_begins_anew() {
+    let place = Place::new();
+    let mut harness = place.open();
+    press(&mut harness, "Numbers of the scene");
+    harness.step();
+    harness.step();
+    let set = |harness: &mut Harness<'static, Option<App>>, label: &str, value: f64| {
+        harness.get_by_role_and_label(egui::Role::SpinButton, label).set_value_accesskit(value);
+        harness.step();
+        harness.step();
+    };
+    set(&mut harness, "[0].acceleration[2]", -3.0);
+    let commands = state(&harness).commands;
+    press(&mut harness, "Step");
+    // the load is what it was told to be: a third of the usual weight pulls at the cube
+    wait(&mut harness, "a step", |state| state.step == 1 && state.commands > commands && state.refusal.is_none());
+    set(&mut harness, "tissue.density", 900.0);
+    wait(&mut harness, "a refusal", |state| state.refusal.as_ref().is_some_and(|told| told.command == "set"));
+    // until what is told has its place
+    harness.run_steps(4);
+    press(&mut harness, "Start anew with it");
+    wait(&mut harness, "the scene anew", |state| {
+        let scene = state.loaded.as_ref().map(|loaded| loaded.scene.scene.clone());
+        scene.is_some_and(|scene| scene.materials["tissue"].density == 900.0)
+    });
+}
+
+#[test]
+fn the_elements_that_set_the_step_are_listed_and_the_eye_goes_there() {
+    let place = Place::new();
+    let mut harness = place.open();
+    press(&mut harness, "What sets the step");
+    harness.step();
+    harness.step();
+    let critical = state(&harness).loaded.as_ref().unwrap().critical.clone();
+    assert!(!critical.is_empty() && critical.len() <= 10);
+    let name = format!("{} {}", critical[0].body, critical[0].element);
+    harness.get_by_label(&name).scroll_to_me();
+    harness.step();
+    harness.step();
+    press(&mut harness, &name);
+    assert!(harness.state().as_ref().unwrap().settings().critical);
 }

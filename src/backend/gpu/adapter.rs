@@ -5,7 +5,8 @@ use wgpu::{Adapter, Backends, DeviceType, Instance, InstanceDescriptor};
 use super::{AdapterReport, Choice, NoGpu};
 
 impl AdapterReport {
-    fn of(adapter: &Adapter) -> Self {
+    /// What an adapter is.
+    pub(super) fn of(adapter: &Adapter) -> Self {
         let info = adapter.get_info();
         let kind = match info.device_type {
             DeviceType::DiscreteGpu => "discrete",

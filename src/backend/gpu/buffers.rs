@@ -43,7 +43,7 @@ impl Gpu {
         };
         let usage = kind_usage | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
         let descriptor = BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
-        let buffer = self.device.create_buffer(&descriptor);
+        let buffer = self.heard(|| self.device.create_buffer(&descriptor));
         self.check_memory(label, bytes)?;
         self.buffers.push(Some(Slot { buffer, label: label.to_owned(), bytes, kind }));
         Ok(BufferId(self.buffers.len() as u32 - 1))
@@ -85,10 +85,11 @@ impl Gpu {
         let pieces = bytes.chunks(PIECE as usize);
         let last = pieces.len();
         for (index, piece) in pieces.enumerate() {
-            self.queue.write_buffer(&self.slot(id)?.buffer, offset + index as u64 * PIECE, piece);
+            let buffer = &self.slot(id)?.buffer;
+            self.heard(|| self.queue.write_buffer(buffer, offset + index as u64 * PIECE, piece));
             if index + 1 < last {
                 // staging memory is only given back once its copy was submitted and has ended
-                self.queue.submit([]);
+                self.last = Some(self.heard(|| self.queue.submit([])));
                 self.wait_for(None)?;
             }
         }
@@ -152,14 +153,20 @@ impl Gpu {
     fn download_batch(&mut self, batch: &[Piece], out: &mut [Vec<u8>]) -> Result<(), GpuError> {
         let total: u64 = batch.iter().map(|p| p.size).sum();
         let staging = self.staging(total)?;
-        let mut encoder = self.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("download") });
-        let mut at = 0;
-        for piece in batch {
-            encoder.copy_buffer_to_buffer(&self.slot(piece.id)?.buffer, piece.offset, &staging, at, piece.size);
-            at += piece.size;
-        }
-        self.queue.submit([encoder.finish()]);
-        staging.map_async(MapMode::Read, 0..total, |_| {});
+        let buffers =
+            batch.iter().map(|piece| Ok(&self.slot(piece.id)?.buffer)).collect::<Result<Vec<_>, GpuError>>()?;
+        let index = self.heard(|| {
+            let mut encoder = self.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("download") });
+            let mut at = 0;
+            for (piece, buffer) in batch.iter().zip(buffers) {
+                encoder.copy_buffer_to_buffer(buffer, piece.offset, &staging, at, piece.size);
+                at += piece.size;
+            }
+            let index = self.queue.submit([encoder.finish()]);
+            staging.map_async(MapMode::Read, 0..total, |_| {});
+            index
+        });
+        self.last = Some(index);
         self.wait()?;
         let view = staging.get_mapped_range(0..total);
         let view = view.map_err(|e| GpuError::Device { during: "download".to_owned(), message: e.to_string() })?;
@@ -184,10 +191,15 @@ impl Gpu {
             usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
             mapped_at_creation: false,
         };
-        let staging = self.device.create_buffer(&descriptor);
+        let staging = self.heard(|| self.device.create_buffer(&descriptor));
         self.check_memory("download", descriptor.size)?;
         self.staging = Some(staging.clone());
         Ok(staging)
+    }
+
+    /// A buffer itself, for who draws by the same device from what is computed in it.
+    pub fn lend(&self, id: BufferId) -> Option<wgpu::Buffer> {
+        self.slot(id).ok().map(|slot| slot.buffer.clone())
     }
 
     /// Memory by label, the largest first, for reports.

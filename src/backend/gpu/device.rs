@@ -3,10 +3,11 @@
 use std::collections::HashMap;
 use std::time::Duration;
 
-use wgpu::{Adapter, Device, DeviceDescriptor, Features, Limits, PollError, PollType, Queue, SubmissionIndex};
+use wgpu::{Adapter, Device, ErrorFilter, Features, Limits, PollError, PollType, Queue, SubmissionIndex};
 
 use super::adapter::choose;
 use super::buffers::Slot;
+use super::host::Host;
 use super::inbox::{Event, Inbox};
 use super::pipelines::{Pipelines, Prepared};
 use super::quirks::safe_uniforms;
@@ -34,7 +35,11 @@ pub struct Gpu {
     pub(super) times: HashMap<String, super::KernelTime>,
     /// Uniform buffers of a kernel, where the driver spoils memory with more.
     pub(super) safe_uniforms: Option<usize>,
+    /// The last of our submissions.
+    pub(super) last: Option<SubmissionIndex>,
     inbox: Inbox,
+    /// The device is a program's, as are the handlers of its errors.
+    adopted: bool,
     report: AdapterReport,
 }
 
@@ -47,24 +52,36 @@ impl Gpu {
         let (adapter, report) = choose(choice)?;
         let (device, queue) =
             request(&adapter).map_err(|e| NoGpu::Refused { adapter: report.to_string(), reason: e.to_string() })?;
-        let inbox = Inbox::listen(&device);
-        let records = StepRecords::new(&device);
-        Ok(Self {
+        Ok(Self::on(device, queue, report, false))
+    }
+
+    /// On a device that is ours alone, or adopted.
+    pub(super) fn on(device: Device, queue: Queue, report: AdapterReport, adopted: bool) -> Self {
+        let inbox = if adopted { Inbox::default() } else { Inbox::listen(&device) };
+        let records = heard(&device, &inbox, adopted, || StepRecords::new(&device));
+        Self {
             limits: device.limits(),
             buffers: Vec::new(),
             staging: None,
             pipelines: Pipelines::default(),
             kernels: Vec::new(),
             records,
-            throttle: SubmissionThrottle::default(),
+            throttle: SubmissionThrottle::new(adopted),
             timing: None,
             times: HashMap::new(),
             device,
             queue,
+            last: None,
             inbox,
+            adopted,
             safe_uniforms: safe_uniforms(&report),
             report,
-        })
+        }
+    }
+
+    /// Does something by the device, so that what goes wrong is in the inbox by the next check.
+    pub(super) fn heard<T>(&self, act: impl FnOnce() -> T) -> T {
+        heard(&self.device, &self.inbox, self.adopted, act)
     }
 
     /// The device's name, driver and kind.
@@ -105,7 +122,7 @@ impl Gpu {
         }
     }
 
-    /// Waits until everything submitted is done.
+    /// Waits until everything submitted by this is done.
     ///
     /// # Errors
     /// [`GpuError::Lost`], [`GpuError::TimedOut`], and whatever went wrong since the last call.
@@ -117,9 +134,12 @@ impl Gpu {
         self.wait_for(None)
     }
 
-    /// Waits for one submission, or for all.
-    pub(super) fn wait_for(&mut self, submission_index: Option<SubmissionIndex>) -> Result<(), GpuError> {
-        let polled = self.device.poll(PollType::Wait { submission_index, timeout: Some(PATIENCE) });
+    /// Waits for one submission, or for the last of ours: a program that shares the device may have more.
+    pub(super) fn wait_for(&mut self, one: Option<SubmissionIndex>) -> Result<(), GpuError> {
+        let polled = self.device.poll(match one.or_else(|| self.last.clone()) {
+            None => PollType::Poll,
+            submission_index => PollType::Wait { submission_index, timeout: Some(PATIENCE) },
+        });
         self.check("waiting for the GPU")?;
         match polled {
             Ok(_) => Ok(()),
@@ -129,7 +149,13 @@ impl Gpu {
                 // only
                 let _ = self.device.poll(PollType::Poll);
                 self.check("waiting for the GPU")?;
-                Err(GpuError::Device { during: "waiting for the GPU".to_owned(), message: other.to_string() })
+                match self.adopted {
+                    // its handler is the program's: this is all that is heard of it
+                    true => Err(GpuError::Lost(format!("the program's device no longer takes work ({other})"))),
+                    false => {
+                        Err(GpuError::Device { during: "waiting for the GPU".to_owned(), message: other.to_string() })
+                    }
+                }
             }
         }
     }
@@ -169,12 +195,24 @@ impl Gpu {
 }
 
 fn request(adapter: &Adapter) -> Result<(Device, Queue), wgpu::RequestDeviceError> {
-    pollster::block_on(adapter.request_device(&DeviceDescriptor {
-        label: Some("sinew"),
-        required_features: adapter.features() & Features::TIMESTAMP_QUERY,
-        required_limits: adapter.limits(),
-        ..Default::default()
-    }))
+    pollster::block_on(adapter.request_device(&Host::device_descriptor(adapter)))
+}
+
+/// Errors of a device of our own come by its callback. Of an adopted one they are caught around each of our calls, so
+/// that its handler hears of the program's own only: scopes are those of this thread.
+fn heard<T>(device: &Device, inbox: &Inbox, adopted: bool, act: impl FnOnce() -> T) -> T {
+    if !adopted {
+        return act();
+    }
+    let kinds = [ErrorFilter::Validation, ErrorFilter::OutOfMemory, ErrorFilter::Internal];
+    let scopes = kinds.map(|kind| device.push_error_scope(kind));
+    let done = act();
+    for scope in scopes.into_iter().rev() {
+        if let Some(error) = pollster::block_on(scope.pop()) {
+            inbox.put(Event::of(error));
+        }
+    }
+    done
 }
 
 #[cfg(test)]

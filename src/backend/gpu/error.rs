@@ -30,6 +30,21 @@ pub enum NoGpu {
         /// What its driver says.
         reason: String,
     },
+    /// A program's device that allows less than kernels need.
+    #[error(
+        "the program's device of {adapter} was opened with {allowed} {what} buffers a shader, of {wanted} that kernels \
+         need and it has: open it with sinew::Host::device_descriptor(&adapter)"
+    )]
+    TooSmall {
+        /// The device.
+        adapter: String,
+        /// Which buffers.
+        what: &'static str,
+        /// How many of them it allows.
+        allowed: u32,
+        /// How many are needed, and could be had.
+        wanted: u32,
+    },
 }
 
 /// What went wrong on a GPU.

@@ -20,16 +20,23 @@ pub(super) enum Event {
     Lost(String),
 }
 
+impl Event {
+    /// Of an error of wgpu.
+    pub(super) fn of(error: wgpu::Error) -> Self {
+        match error {
+            wgpu::Error::OutOfMemory { .. } => Self::OutOfMemory,
+            other => Self::Other(other.to_string()),
+        }
+    }
+}
+
 impl Inbox {
     /// Hears the device's errors from now on.
     pub(super) fn listen(device: &wgpu::Device) -> Self {
         let inbox = Self::default();
         let errors = inbox.clone();
         device.on_uncaptured_error(Arc::new(move |error| {
-            errors.put(match error {
-                wgpu::Error::OutOfMemory { .. } => Event::OutOfMemory,
-                other => Event::Other(other.to_string()),
-            });
+            errors.put(Event::of(error));
         }));
         let lost = inbox.clone();
         device.set_device_lost_callback(move |_, text| lost.open().lost = Some(text));

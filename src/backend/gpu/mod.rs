@@ -30,6 +30,8 @@ mod buffers;
 #[cfg(feature = "gpu")]
 mod device;
 #[cfg(feature = "gpu")]
+mod host;
+#[cfg(feature = "gpu")]
 mod inbox;
 #[cfg(feature = "gpu")]
 mod pipelines;
@@ -46,9 +48,11 @@ mod timing;
 mod absent;
 
 #[cfg(not(feature = "gpu"))]
-pub use absent::Gpu;
+pub use absent::{Buffer, Gpu, Host};
 #[cfg(feature = "gpu")]
 pub use device::Gpu;
 pub use error::{GpuError, NoGpu};
+#[cfg(feature = "gpu")]
+pub use host::{Buffer, Host};
 pub use report::{AdapterReport, BufferKind, Choice, GpuLimits, KernelTime, Memory, SmallerLimits};
 pub use testing::gpu_or_reason;

@@ -128,7 +128,8 @@ impl Gpu {
         let mut module = composed.module().clone();
         let moved = self.safe_uniforms.map(|safe| read_from_storage(&mut module, safe)).unwrap_or_default();
         let source = ShaderSource::Naga(std::borrow::Cow::Owned(module));
-        let shader = self.device.create_shader_module(ShaderModuleDescriptor { label: Some(&kernel.label), source });
+        let descriptor = ShaderModuleDescriptor { label: Some(&kernel.label), source };
+        let shader = self.heard(|| self.device.create_shader_module(descriptor));
         self.check(&format!("the shader of kernel `{}` ({})", kernel.label, kernel.paths()))?;
         let module = Arc::new(Module { composed, shader, moved });
         self.pipelines.modules.insert(key.to_owned(), module.clone());
@@ -149,23 +150,26 @@ impl Gpu {
         let label = Some(kernel.label.as_str());
         let bindings = entry.uses.iter().map(|i| &module.composed.bindings[*i]);
         let entries: Vec<_> = bindings.map(|b| layout_entry(b, module.moved.contains(&b.name))).collect();
-        let layout = self.device.create_bind_group_layout(&BindGroupLayoutDescriptor { label, entries: &entries });
-        let pipeline_layout = self.device.create_pipeline_layout(&PipelineLayoutDescriptor {
-            label,
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = self.device.create_compute_pipeline(&ComputePipelineDescriptor {
-            label,
-            layout: Some(&pipeline_layout),
-            module: &module.shader,
-            entry_point: Some(kernel.entry),
-            // kernels write workgroup memory before they read it
-            compilation_options: PipelineCompilationOptions {
-                zero_initialize_workgroup_memory: false,
-                ..Default::default()
-            },
-            cache: None,
+        let (layout, pipeline) = self.heard(|| {
+            let layout = self.device.create_bind_group_layout(&BindGroupLayoutDescriptor { label, entries: &entries });
+            let pipeline_layout = self.device.create_pipeline_layout(&PipelineLayoutDescriptor {
+                label,
+                bind_group_layouts: &[Some(&layout)],
+                immediate_size: 0,
+            });
+            let pipeline = self.device.create_compute_pipeline(&ComputePipelineDescriptor {
+                label,
+                layout: Some(&pipeline_layout),
+                module: &module.shader,
+                entry_point: Some(kernel.entry),
+                // kernels write workgroup memory before they read it
+                compilation_options: PipelineCompilationOptions {
+                    zero_initialize_workgroup_memory: false,
+                    ..Default::default()
+                },
+                cache: None,
+            });
+            (layout, pipeline)
         });
         self.check(&format!("the pipeline of kernel `{}` (`{}` in {})", kernel.label, kernel.entry, kernel.paths()))?;
         self.pipelines.pipelines.insert(key, (pipeline.clone(), layout.clone()));
@@ -193,7 +197,8 @@ impl Gpu {
             entries.push(BindGroupEntry { binding: binding.index, resource });
         }
         let label = Some(kernel.label.as_str());
-        let group = self.device.create_bind_group(&BindGroupDescriptor { label, layout, entries: &entries });
+        let group = BindGroupDescriptor { label, layout, entries: &entries };
+        let group = self.heard(|| self.device.create_bind_group(&group));
         self.check(&format!("the buffers of kernel `{}`", kernel.label))?;
         Ok(group)
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use wgpu::{
     Buffer, BufferBinding, BufferDescriptor, BufferUsages, CommandEncoderDescriptor, ComputePass,
-    ComputePassDescriptor, Device,
+    ComputePassDescriptor, Device, SubmissionIndex,
 };
 
 use super::pipelines::Prepared;
@@ -162,40 +162,23 @@ impl Gpu {
         for (slot, record) in spread.chunks_exact_mut(stride as usize).zip(records.chunks_exact(record_size)) {
             slot[..record_size].copy_from_slice(record);
         }
-        self.queue.write_buffer(&self.records.buffer, 0, &spread);
+        self.heard(|| self.queue.write_buffer(&self.records.buffer, 0, &spread));
     }
 
     fn write_packed_records(&self, records: &[u8], steps: u32) {
         let mut packed = vec![0; PACKED_HEADER];
         packed[..size_of::<u32>()].copy_from_slice(&steps.to_le_bytes());
         packed.extend_from_slice(records);
-        self.queue.write_buffer(&self.records.packed, 0, &packed);
+        self.heard(|| self.queue.write_buffer(&self.records.packed, 0, &packed));
     }
 
     fn submit(&mut self, key: &Arc<[KernelId]>, steps: u32, stride: u64) -> Result<(), GpuError> {
         let kernels = key.iter().map(|id| self.kernel(*id)).collect::<Result<Vec<_>, _>>()?;
         let batch = Batch { kernels: kernels.into_iter().filter(|k| k.groups.0 > 0).collect(), steps, stride };
-        let mut encoder = self.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("steps") });
-        let timed = match &self.timing {
-            None => {
-                let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
-                batch.each(|kernel, offset| dispatch(&mut pass, kernel, offset));
-                Vec::new()
-            }
-            Some(timing) => {
-                let mut labels = Vec::new();
-                batch.each(|kernel, offset| {
-                    let descriptor = timing.pass(labels.len() as u32, &kernel.label);
-                    dispatch(&mut encoder.begin_compute_pass(&descriptor), kernel, offset);
-                    labels.push(kernel.label.clone());
-                });
-                timing.resolve(&mut encoder, labels.len() as u32);
-                labels
-            }
-        };
+        let (index, timed) = self.heard(|| self.encode(&batch));
         let mut dispatches = 0;
         batch.each(|_, _| dispatches += 1);
-        let index = self.queue.submit([encoder.finish()]);
+        self.last = Some(index.clone());
         self.throttle.dispatches += dispatches;
         self.check("running kernels")?;
         self.throttle.submitted(index, key.clone(), steps);
@@ -207,6 +190,29 @@ impl Gpu {
             self.throttle.retire();
         }
         Ok(())
+    }
+}
+
+impl Gpu {
+    /// Submits a batch: its number, and the labels of what is timed in it.
+    fn encode(&self, batch: &Batch<'_>) -> (SubmissionIndex, Vec<String>) {
+        let mut encoder = self.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("steps") });
+        let mut labels = Vec::new();
+        match &self.timing {
+            None => {
+                let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
+                batch.each(|kernel, offset| dispatch(&mut pass, kernel, offset));
+            }
+            Some(timing) => {
+                batch.each(|kernel, offset| {
+                    let descriptor = timing.pass(labels.len() as u32, &kernel.label);
+                    dispatch(&mut encoder.begin_compute_pass(&descriptor), kernel, offset);
+                    labels.push(kernel.label.clone());
+                });
+                timing.resolve(&mut encoder, labels.len() as u32);
+            }
+        }
+        (self.queue.submit([encoder.finish()]), labels)
     }
 }
 

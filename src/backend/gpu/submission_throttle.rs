@@ -11,6 +11,8 @@ use crate::backend::kernel::KernelId;
 
 /// Seconds a submission should take at most.
 const TARGET: f64 = 0.1;
+/// The same where a window is drawn by the device, too: half of a frame.
+const SHARED_TARGET: f64 = 0.008;
 /// Steps a submission has at most.
 pub(super) const MOST_STEPS: u32 = 256;
 /// Submissions in flight: the GPU works on one while the next is encoded.
@@ -19,6 +21,8 @@ const IN_FLIGHT: usize = 2;
 /// Measured speed of lists of kernels, and the submissions not yet waited for.
 #[derive(Default)]
 pub(super) struct SubmissionThrottle {
+    /// A window is drawn by the same device.
+    shared: bool,
     seconds_per_step: HashMap<Arc<[KernelId]>, f64>,
     flights: VecDeque<Flight>,
     last_end: Option<Instant>,
@@ -36,9 +40,15 @@ struct Flight {
 }
 
 impl SubmissionThrottle {
+    /// For a device that is ours alone, or shared with a window.
+    pub(super) fn new(shared: bool) -> Self {
+        Self { shared, ..Self::default() }
+    }
+
     /// Steps for the next submission: one until there is a measurement.
     pub(super) fn batch(&self, kernels: &[KernelId]) -> u32 {
-        let fits = |seconds: &f64| (TARGET / seconds.max(1e-9)) as u32;
+        let target = if self.shared { SHARED_TARGET } else { TARGET };
+        let fits = |seconds: &f64| (target / seconds.max(1e-9)) as u32;
         self.seconds_per_step.get(kernels).map_or(1, fits).clamp(1, MOST_STEPS)
     }
 
@@ -86,6 +96,12 @@ mod tests {
     #[test]
     fn a_submission_stays_under_a_tenth_of_a_second() {
         assert_eq!(throttle_with(0.01).batch(&[KernelId(3)]), 10);
+    }
+
+    #[test]
+    fn a_window_waits_for_half_a_frame_at_most() {
+        let shared = SubmissionThrottle { shared: true, ..throttle_with(0.001) };
+        assert_eq!(shared.batch(&[KernelId(3)]), 8);
     }
 
     #[test]

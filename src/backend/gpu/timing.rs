@@ -57,17 +57,16 @@ impl Gpu {
         if !self.limits().time_stamps {
             return Err(GpuError::NoTimeStamps(self.report().to_string()));
         }
-        let stamps = self.device.create_query_set(&QuerySetDescriptor {
-            label: Some("kernel times"),
-            ty: QueryType::Timestamp,
-            count: 2 * MOST_DISPATCHES,
-        });
-        let resolved = self.device.create_buffer(&BufferDescriptor {
-            label: Some("kernel times"),
+        let label = Some("kernel times");
+        let stamps = QuerySetDescriptor { label, ty: QueryType::Timestamp, count: 2 * MOST_DISPATCHES };
+        let stamps = self.heard(|| self.device.create_query_set(&stamps));
+        let resolved = BufferDescriptor {
+            label,
             size: 16 * u64::from(MOST_DISPATCHES),
             usage: BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC,
             mapped_at_creation: false,
-        });
+        };
+        let resolved = self.heard(|| self.device.create_buffer(&resolved));
         self.check("making time stamps")?;
         self.times.clear();
         self.timing = Some(Timing { stamps, resolved });
@@ -87,10 +86,14 @@ impl Gpu {
         let resolved = timing.resolved.clone();
         let bytes = 16 * labels.len().min(MOST_DISPATCHES as usize) as u64;
         let staging = self.staging(bytes)?;
-        let mut encoder = self.device.create_command_encoder(&Default::default());
-        encoder.copy_buffer_to_buffer(&resolved, 0, &staging, 0, bytes);
-        self.queue.submit([encoder.finish()]);
-        staging.map_async(MapMode::Read, 0..bytes, |_| {});
+        let index = self.heard(|| {
+            let mut encoder = self.device.create_command_encoder(&Default::default());
+            encoder.copy_buffer_to_buffer(&resolved, 0, &staging, 0, bytes);
+            let index = self.queue.submit([encoder.finish()]);
+            staging.map_async(MapMode::Read, 0..bytes, |_| {});
+            index
+        });
+        self.last = Some(index);
         self.wait()?;
         let view = staging.get_mapped_range(0..bytes);
         let view = view.map_err(|e| GpuError::Device { during: "kernel times".to_owned(), message: e.to_string() })?;

@@ -82,7 +82,7 @@ fn share(text: &str) -> Result<f64, String> {
 /// What `sinew view` is told.
 #[derive(Args)]
 pub struct ViewArguments {
-    /// The scene, and what else sinew-view takes (sinew-view --help)
+    /// The scene or the folder of a run, and what else sinew-view takes (sinew-view --help)
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "SCENE")]
     pub words: Vec<std::ffi::OsString>,
 }

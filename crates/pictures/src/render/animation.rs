@@ -29,17 +29,26 @@ pub fn pictures(frames: usize) -> usize {
     frames + typical(frames).len()
 }
 
-/// Writes an animation that loops for ever; the file appears when it is complete. `picture` draws a picture of the
-/// series; some are drawn twice, because the colours have to be chosen first.
+/// The delays of so many pictures (1/100 s).
+pub fn delays(frames: usize) -> Vec<u16> {
+    let mut delays = vec![delay(frames); frames];
+    delays.last_mut().into_iter().for_each(|last| *last += REST);
+    delays
+}
+
+/// Writes an animation that loops for ever, a picture for each delay (1/100 s); the file appears when it is complete.
+/// `picture` draws a picture of the series; some are drawn twice, because the colours have to be chosen first.
+///
+/// # Errors
+/// What `picture` says; a file that cannot be written.
 pub fn write_gif(
     path: &Path,
-    frames: usize,
+    delays: &[u16],
     size: (usize, usize),
     mut picture: impl FnMut(usize) -> Result<Image, RenderError>,
 ) -> Result<(), RenderError> {
-    let last = frames.saturating_sub(1);
     let mut samples = Vec::new();
-    for row in typical(frames) {
+    for row in typical(delays.len()) {
         samples.push(picture(row)?);
     }
     let mut palette = Palette::new(&samples);
@@ -54,7 +63,7 @@ pub fn write_gif(
         let mut encoder = gif::Encoder::new(&mut *file, wide, high, &palette.bytes()).map_err(refused)?;
         encoder.set_repeat(gif::Repeat::Infinite).map_err(refused)?;
         let mut before = Vec::new();
-        for row in 0..frames {
+        for (row, delay) in delays.iter().enumerate() {
             let image = match picture(row) {
                 Ok(image) => image,
                 Err(error) => {
@@ -64,7 +73,7 @@ pub fn write_gif(
             };
             let now: Vec<u8> = image.pixels.iter().map(|pixel| palette.index(*pixel)).collect();
             let mut frame = changes(&before, &now, image.width);
-            frame.delay = delay(frames) + if row == last { REST } else { 0 };
+            frame.delay = *delay;
             encoder.write_frame(&frame).map_err(refused)?;
             before = now;
         }

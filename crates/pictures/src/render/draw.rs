@@ -151,7 +151,8 @@ pub fn draw_with_progress(
         Ok(image)
     };
     if options.animate {
-        animation::write_gif(&options.out, frames, size, |number| picture(number / phases, number % phases))?;
+        let delays = animation::delays(frames);
+        animation::write_gif(&options.out, &delays, size, |number| picture(number / phases, number % phases))?;
     } else {
         encode::write_png(&options.out, &picture(last, 0)?)?;
     }

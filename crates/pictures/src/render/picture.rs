@@ -36,6 +36,7 @@ pub struct Picture<'a> {
 }
 
 /// Surfaces of one kind.
+#[derive(Clone, Copy)]
 pub struct Layer<'a> {
     /// Positions (m); those that no face names are ignored.
     pub vertices: &'a [Vec3],

@@ -111,6 +111,16 @@ impl Tools {
         known.map(|(tool, place)| tool.placed(&pose(place), spanned)).collect()
     }
 
+    /// Where they are in a frame of a series, its number and its time (s): name, place of the origin (m), how each is
+    /// turned.
+    pub fn poses(&self, row: usize, time: f64) -> Vec<(String, DVec3, DQuat)> {
+        let pose = |tool: &Tool| {
+            let pose = self.pose(&tool.motion, row, time);
+            (tool.name.clone(), pose.at, DQuat::from_mat3(&pose.rotation))
+        };
+        self.tools.iter().map(pose).collect()
+    }
+
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.tools.is_empty()

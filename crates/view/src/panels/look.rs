@@ -1,9 +1,10 @@
 //! What is seen, and how.
 
 use crate::app::App;
-use crate::settings::{FIELDS, components, title};
+use crate::settings::{ARROWS, FIELDS, components, title};
 use egui::{ComboBox, DragValue, Slider, Ui};
 use glam::Vec3;
+use std::collections::BTreeSet;
 
 /// Directions to look from, as `sinew render --from` has them.
 pub const FROM: [(&str, Vec3); 6] = [
@@ -44,9 +45,35 @@ impl App {
             ui.checkbox(&mut settings.wireframe, "Elements").on_hover_text("edges of elements");
             ui.checkbox(&mut settings.ghost, "Rest shape");
             ui.checkbox(&mut settings.supports, "Supports").on_hover_text("nodes that are fixed or moved as told");
+            ui.checkbox(&mut settings.removed, "Removed").on_hover_text("elements that are gone");
             ui.checkbox(&mut settings.tools, "Tools");
             ui.checkbox(&mut settings.skins, "Skins").on_hover_text("fine surfaces, where bodies have them");
         });
+        let named = |arrows: Option<_>| {
+            let found = arrows.and_then(|field| ARROWS.iter().find(|(known, _)| *known == field));
+            found.map_or("none", |(_, name)| name)
+        };
+        ComboBox::from_label("Arrows").selected_text(named(settings.arrows)).show_ui(ui, |ui| {
+            ui.selectable_value(&mut settings.arrows, None, "none");
+            for (field, name) in ARROWS {
+                ui.selectable_value(&mut settings.arrows, Some(field), name);
+            }
+        });
+        let sets: BTreeSet<&String> = self
+            .state
+            .loaded
+            .iter()
+            .flat_map(|loaded| loaded.bodies.iter().flat_map(|body| body.sets.keys()))
+            .collect();
+        if !sets.is_empty() {
+            let text = settings.set.clone().unwrap_or_else(|| "none".into());
+            ComboBox::from_label("Set").selected_text(text).height(400.0).show_ui(ui, |ui| {
+                ui.selectable_value(&mut settings.set, None, "none");
+                for name in sets {
+                    ui.selectable_value(&mut settings.set, Some(name.clone()), name);
+                }
+            });
+        }
         ui.add(Slider::new(&mut settings.deformation, 0.0..=20.0).logarithmic(true).text("deformation"));
         ui.add(Slider::new(&mut settings.wet, 0.0..=1.0).text("wet"));
         ui.add(Slider::new(&mut settings.shadows, 0.0..=1.0).text("shadows"));

@@ -23,10 +23,10 @@ impl App {
                     self.run_or_pause();
                 }
                 if ui.button("Step").on_hover_text("one step of the simulation").clicked() {
-                    self.driver.send(Command::Step(1));
+                    self.source.send(Command::Step(1));
                 }
                 if ui.button("Reset").on_hover_text("back to the start").clicked() {
-                    self.driver.send(Command::Reset);
+                    self.source.send(Command::Reset);
                 }
             });
             ui.separator();
@@ -35,7 +35,7 @@ impl App {
                 SPEEDS.iter().for_each(|each| drop(ui.selectable_value(&mut speed, *each, speed_text(*each))));
             });
             if speed != self.state.speed && self.state.speed > 0.0 {
-                self.driver.send(Command::Speed(speed));
+                self.source.send(Command::Speed(speed));
             }
             ui.separator();
             ui.label(self.pace_text());
@@ -44,6 +44,7 @@ impl App {
                     self.shows_keys = !self.shows_keys;
                 }
                 ui.toggle_value(&mut self.shows_plots, "Plots");
+                self.film_button(ui);
                 if ui.button("Picture").on_hover_text("writes the picture as a PNG file").clicked() {
                     self.wants_picture = true;
                 }
@@ -55,11 +56,30 @@ impl App {
         ui.add_space(3.0);
     }
 
+    fn film_button(&mut self, ui: &mut Ui) {
+        if let Some(count) = self.pictures_taken() {
+            if ui.button(format!("End film ({count})")).clicked() {
+                self.end_film();
+            }
+            return;
+        }
+        ui.add_enabled_ui(self.state.loaded.is_some(), |ui| {
+            ui.menu_button("Film", |ui| {
+                for (name, ending) in [("GIF", "gif"), ("MP4 (by ffmpeg)", "mp4"), ("PNG files", "")] {
+                    if ui.button(name).clicked() {
+                        self.begin_film(ending);
+                        ui.close();
+                    }
+                }
+            });
+        });
+    }
+
     fn pace_text(&self) -> String {
         let state = &self.state;
         match (&state.loaded, state.real_time_factor) {
-            _ if self.driver.has_ended() => "the simulation ended by a mistake of sinew's own".into(),
-            (None, _) if self.driver.is_behind() => "loading".into(),
+            _ if self.source.has_ended() => "the simulation ended by a mistake of sinew's own".into(),
+            (None, _) if self.source.is_behind() => "loading".into(),
             (None, _) => "drop a scene here".into(),
             (_, Some(factor)) => format!("{} × real time", number(factor)),
             _ if state.breakdown.is_some() => "broke down".into(),
@@ -81,15 +101,20 @@ impl App {
             let label = ui.label("Time").id;
             ui.spacing_mut().slider_width = (ui.available_width() - 470.0).max(80.0);
             let slider = Slider::new(&mut time, 0.0..=end).show_value(false);
-            let slider = ui.add(slider).labelled_by(label).on_hover_text("back to a state that was kept");
+            let finished = self.source.finished().is_some();
+            let told = if finished { "to any of its times" } else { "back to a state that was kept" };
+            let slider = ui.add(slider).labelled_by(label).on_hover_text(told);
             let moved = slider.changed();
-            if moved && time < state.time {
-                self.driver.send(Command::Pause);
-                self.driver.send(Command::Rewind(time));
+            if moved && (time < state.time || finished) {
+                self.source.send(Command::Pause);
+                self.source.send(Command::Rewind(time));
             }
             ui.monospace(format!("{:.4} s", state.time));
             ui.separator();
-            ui.label(format!("step {}, Δt {} s", state.step, number(state.time_step)));
+            match finished {
+                true => ui.label(format!("frame {}", state.step + 1)),
+                false => ui.label(format!("step {}, Δt {} s", state.step, number(state.time_step))),
+            };
             ui.separator();
             ui.label(loaded.backend.clone());
         });
@@ -108,7 +133,7 @@ impl App {
             let slider = Slider::new(&mut target, -most..=most).text(&input.name);
             let uses: Vec<String> = input.uses.iter().map(|each| format!("{} ({})", each.of, each.path)).collect();
             if ui.add(slider).on_hover_text(uses.join("\n")).changed() {
-                self.driver.send(Command::Input { name: input.name.clone(), value: target });
+                self.source.send(Command::Input { name: input.name.clone(), value: target });
             }
         }
     }

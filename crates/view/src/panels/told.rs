@@ -88,7 +88,11 @@ impl App {
                 let plot = Plot::new(title).height(150.0).legend(Legend::default()).allow_scroll(false);
                 plot.show(ui, |plot| {
                     for (place, name) in numbers.iter().enumerate() {
-                        plot.line(Line::new(name.clone(), self.traces.points(column + place)));
+                        let points = match self.source.finished() {
+                            Some(run) => run.curves.points(column + place),
+                            None => self.traces.points(column + place),
+                        };
+                        plot.line(Line::new(name.clone(), points));
                     }
                 });
                 column += numbers.len();
@@ -111,6 +115,11 @@ impl App {
                 }
             }
             if let Some(refusal) = &state.refusal {
+                let anew = "takes the scene with this value, from its start";
+                if refusal.command == "set" && ui.button("Start anew with it").on_hover_text(anew).clicked() {
+                    let sets = self.assignments();
+                    self.files.put_in(sets);
+                }
                 ui.colored_label(RED, RichText::new(&refusal.reason).monospace());
             }
             if let Some((text, bad)) = self.news.clone() {

@@ -4,14 +4,17 @@
 //! What is drawn are the layers of `sinew_pictures`, seen by its cameras and with its colours and its light, so that a
 //! picture of the viewer and one of `sinew render` are of the same scene.
 
+mod lent;
 mod pipelines;
 mod target;
 mod triangles;
 mod uniform;
 
+pub use lent::Lent;
 pub use triangles::Surface;
 pub use uniform::{Look, Tissue};
 
+use lent::{Deform, Kept, KeptBody};
 use pipelines::Pipelines;
 use sinew_pictures::render::{Camera, Extent, Image, Plane, Scale};
 use target::{Maps, Target, depth};
@@ -22,6 +25,8 @@ use wgpu::*;
 pub struct Scene<'a> {
     /// Surfaces; those that are seen through in the order in which they are.
     pub surfaces: &'a [Surface<'a>],
+    /// Another one whenever surfaces that are drawn from where they are on the device have other faces.
+    pub key: u64,
     /// Colours of values.
     pub scale: Scale,
     /// Takes away what lies beyond, of surfaces that it cuts.
@@ -39,6 +44,8 @@ pub struct Scene3d {
     device: Device,
     queue: Queue,
     pipelines: Pipelines,
+    deform: Deform,
+    kept: Option<Kept>,
     maps: Maps,
     target: Target,
 }
@@ -49,7 +56,8 @@ impl Scene3d {
         let pipelines = Pipelines::new(&device);
         let maps = Maps::new(&device, &pipelines);
         let target = Target::new(&device, size);
-        Self { device, queue, pipelines, maps, target }
+        let deform = Deform::new(&device);
+        Self { device, queue, pipelines, deform, kept: None, maps, target }
     }
 
     /// Width and height of the picture (pixels).
@@ -72,7 +80,9 @@ impl Scene3d {
     }
 
     /// Draws a scene.
-    pub fn draw(&self, scene: &Scene<'_>, camera: &Camera) {
+    pub fn draw(&mut self, scene: &Scene<'_>, camera: &Camera) {
+        self.keep(scene, camera);
+        let kept: &[KeptBody] = self.kept.as_ref().map_or(&[], |kept| &kept.bodies);
         let triangles = triangles::of(scene.surfaces, camera);
         let group = self.bind(scene, camera);
         let corners = self.device.create_buffer_init(&BufferInitDescriptor {
@@ -81,6 +91,8 @@ impl Scene3d {
             usage: BufferUsages::VERTEX,
         });
         let mut encoder = self.device.create_command_encoder(&CommandEncoderDescriptor::default());
+        let deformations = scene.surfaces.iter().filter_map(|surface| Some(surface.lent?.deformation));
+        self.deform.run(&self.queue, &mut encoder, kept, &deformations.collect::<Vec<_>>());
         for (pipeline, view) in self.pipelines.maps.iter().zip(&self.maps.views) {
             let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
                 label: Some("shadows"),
@@ -89,6 +101,7 @@ impl Scene3d {
             });
             pass.set_bind_group(0, &group, &[]);
             draw(&mut pass, pipeline, &corners, 0..triangles.casting);
+            kept.iter().for_each(|body| draw(&mut pass, pipeline, &body.corners, 0..body.count as usize));
         }
         {
             let mut pass = self.target.pass(&mut encoder);
@@ -96,7 +109,9 @@ impl Scene3d {
             pass.set_bind_group(1, &self.maps.group, &[]);
             pass.set_pipeline(&self.pipelines.behind);
             pass.draw(0..3, 0..1);
-            draw(&mut pass, &self.pipelines.solid, &corners, 0..triangles.solid);
+            let solid = &self.pipelines.solid;
+            draw(&mut pass, solid, &corners, 0..triangles.solid);
+            kept.iter().for_each(|body| draw(&mut pass, solid, &body.corners, 0..body.count as usize));
             if scene.look.ground {
                 pass.set_pipeline(&self.pipelines.ground);
                 pass.draw(0..4, 0..1);
@@ -104,6 +119,24 @@ impl Scene3d {
             draw(&mut pass, &self.pipelines.clear, &corners, triangles.solid..triangles.corners.len());
         }
         self.queue.submit([encoder.finish()]);
+    }
+
+    /// Makes the corners of what is drawn from where it is on the device, where they are others now.
+    fn keep(&mut self, scene: &Scene<'_>, camera: &Camera) {
+        let lent = || scene.surfaces.iter().filter(|surface| surface.lent.is_some());
+        if lent().next().is_none() {
+            self.kept = None;
+        } else if self.kept.as_ref().is_none_or(|kept| kept.key != scene.key) {
+            let keep = |(place, surface): (usize, &Surface<'_>)| self.deform.keep(&self.device, place, surface, camera);
+            let bodies = lent().enumerate().filter_map(keep);
+            self.kept = Some(Kept { key: scene.key, bodies: bodies.collect() });
+        }
+    }
+
+    /// Waits until all that was drawn is there; for who measures.
+    pub fn wait(&self) {
+        // a lost device has nothing to wait for
+        let _ = self.device.poll(PollType::wait_indefinitely());
     }
 
     /// The picture that was drawn last; none where the device is lost.

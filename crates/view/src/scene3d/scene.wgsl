@@ -89,24 +89,48 @@ struct Shadow {
     if is_cut(it.flags, it.position) { discard; }
 }
 
-// The share of a light that reaches a place, over a disc (shares of the map) of 16 places, those of a sunflower.
-fn reaches(map: texture_depth_2d, clip: mat4x4f, position: vec3f, disc: f32) -> f32 {
-    let at = (clip * vec4f(position, 1)).xyz;
-    let place = vec2f(0.5 + 0.5 * at.x, 0.5 - 0.5 * at.y);
+// One of so many places of a disc of radius 1, those of a sunflower.
+fn seed(number: i32, count: i32) -> vec2f {
+    let turn = 2.39996 * f32(number);
+    return sqrt((f32(number) + 0.5) / f32(count)) * vec2f(cos(turn), sin(turn));
+}
+
+// How far before a place (shares of the map's depth) that is which keeps a light from it, over a disc around it.
+fn gap(map: texture_depth_2d, place: vec2f, depth: f32, disc: f32) -> f32 {
+    let size = vec2f(textureDimensions(map));
     var sum = 0.0;
-    for (var number = 0; number < 16; number++) {
-        let turn = 2.39996 * f32(number);
-        let aside = disc * sqrt((f32(number) + 0.5) / 16.0) * vec2f(cos(turn), sin(turn));
-        sum += textureSampleCompareLevel(map, nearer, place + aside, clamp(at.z, 0.0, 1.0));
+    var count = 0.0;
+    for (var number = 0; number < 9; number++) {
+        let texel = clamp((place + disc * seed(number, 9)) * size, vec2f(0), size - 1.0);
+        let before = depth - textureLoad(map, vec2i(texel), 0);
+        if before > 0.0 {
+            sum += before;
+            count += 1.0;
+        }
     }
-    return sum / 16.0;
+    return sum / max(count, 1.0);
+}
+
+// The share of a light that reaches a place. The light is a disc, seen under an angle whose tangent is `wide`: shadows
+// are sharp where they touch what casts them, and wide (shares of the map) far from it.
+fn reaches(map: texture_depth_2d, clip: mat4x4f, position: vec3f, wide: f32, least: f32, most: f32) -> f32 {
+    let at = (clip * vec4f(position, 1)).xyz;
+    let depth = clamp(at.z, 0.0, 1.0);
+    let place = vec2f(0.5 + 0.5 * at.x, 0.5 - 0.5 * at.y);
+    let disc = clamp(wide * gap(map, place, depth, most), least, most);
+    var sum = 0.0;
+    for (var number = 0; number < 24; number++) {
+        sum += textureSampleCompareLevel(map, nearer, place + disc * seed(number, 24), depth);
+    }
+    return sum / 24.0;
 }
 
 // The light left at a place of a surface, or on the ground: of the key light and of the sky.
 fn light_at(position: vec3f, normal: vec3f) -> vec2f {
     let off = position + normal * (0.012 * view.middle.w);
-    let key = reaches(key_map, view.key_clip, off, 0.008);
-    let sky = 0.5 * (reaches(sky_map, view.sky_clip, off, 0.02) + reaches(sky_map, view.sky_clip, off, 0.07));
+    let key = reaches(key_map, view.key_clip, off, 0.14, 0.004, 0.03);
+    let sky = 0.5 * (reaches(sky_map, view.sky_clip, off, 0.5, 0.02, 0.03)
+        + reaches(sky_map, view.sky_clip, off, 1.0, 0.05, 0.08));
     return mix(vec2f(1), vec2f(key, sky), view.shade.x);
 }
 
@@ -157,25 +181,33 @@ fn noise(place: vec3f) -> f32 {
 }
 
 // The gloss of a wet film: a lamp mirrored sharply, one mirrored in a rougher layer below, and the room at the rim.
-fn film(normal: vec3f, light: vec2f) -> f32 {
+// What is too fine for a pixel to be seen as waves of the film (0 to 1) makes its mirror dull: as bright, and wider.
+fn film(normal: vec3f, light: vec2f, dull: f32) -> f32 {
     let mirrored = 2.0 * normal.z * normal - vec3f(0, 0, 1);
     let rim = 0.04 + 0.96 * pow(1.0 - clamp(normal.z, 0.0, 1.0), 5.0);
-    let sharp = 1.1 * pow(max(dot(mirrored, KEY), 0.0), 260.0) + 0.35 * pow(max(dot(mirrored, FILL), 0.0), 120.0);
+    let power = mix(vec2f(260.0, 120.0), vec2f(70.0, 50.0), dull);
+    let strength = mix(vec2f(1.1, 0.35), vec2f(0.42, 0.18), dull);
+    let sharp = strength.x * pow(max(dot(mirrored, KEY), 0.0), power.x)
+        + strength.y * pow(max(dot(mirrored, FILL), 0.0), power.y);
     let broad = 0.16 * pow(max(dot(mirrored, KEY), 0.0), 18.0) * light.x;
     let room = rim * (0.25 + 0.45 * smoothstep(-0.4, 0.9, mirrored.y)) * light.y;
     return sharp * mix(0.15, 1.0, light.x) + broad + 0.7 * room;
 }
 
 // Tissue: light goes in, is scattered, and comes out redder beyond the edge of its shadow and where it is thin.
-fn tissue(normal: vec3f, rest: vec3f, number: u32, light: vec2f) -> vec3f {
+// `pixel`: how far the shape at rest goes on from a pixel to the next (m).
+fn tissue(normal: vec3f, rest: vec3f, number: u32, light: vec2f, pixel: f32) -> vec3f {
     let colour = tissues[2u * number];
     let scatter = tissues[2u * number + 1u];
     let place = rest * (34.0 / view.middle.w);
     let mottled = 0.6 * noise(place) + 0.4 * noise(place * 3.1);
-    let fine = place * 7.0;
-    // a film over what is not quite even
-    let bump = vec3f(noise(fine), noise(fine + vec3f(31.7)), noise(fine + vec3f(77.1))) - 0.5;
-    let uneven = normalize(normal + 0.10 * scatter.w * bump);
+    // a film over what is not quite even: long waves, and finer ones as far as a pixel shows them
+    let long = place * 1.7;
+    let fine = place * 5.0;
+    let dull = smoothstep(0.12, 0.5, 5.0 * pixel * 34.0 / view.middle.w);
+    let waves = vec3f(noise(long), noise(long + vec3f(31.7)), noise(long + vec3f(77.1))) - 0.5;
+    let ripples = vec3f(noise(fine), noise(fine + vec3f(31.7)), noise(fine + vec3f(77.1))) - 0.5;
+    let uneven = normalize(normal + scatter.w * (0.09 * waves + 0.05 * (1.0 - dull) * ripples));
     let albedo = colour.rgb * mix(vec3f(1), 0.72 + 0.5 * vec3f(mottled, mottled * 0.92, mottled * 0.9), colour.w);
     let wrap = scatter.rgb;
     let key = clamp((vec3f(dot(normal, KEY)) + wrap) / (1.0 + wrap), vec3f(0), vec3f(1));
@@ -185,7 +217,7 @@ fn tissue(normal: vec3f, rest: vec3f, number: u32, light: vec2f) -> vec3f {
     let through = mix(wrap * 0.5, vec3f(1), light.x);
     let thin = pow(1.0 - clamp(normal.z, 0.0, 1.0), 2.5) * 0.35 * wrap;
     let diffuse = around + 0.72 * key * key * through + 0.2 * fill * mix(0.5, 1.0, light.y) + thin;
-    return albedo * diffuse + view.range.w * film(uneven, light);
+    return albedo * diffuse + view.range.w * film(uneven, light, dull * scatter.w);
 }
 
 fn ink_of(it: Seen, width: vec3f) -> f32 {
@@ -212,6 +244,7 @@ fn side_of(it: Seen, front: bool) -> Side {
 
 @fragment fn solid(it: Seen, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let width = fwidth(it.share);
+    let pixel = length(fwidth(it.rest));
     if is_cut(it.flags, it.position) { discard; }
     let side = side_of(it, front);
     let light = light_at(it.position, side.world);
@@ -224,13 +257,13 @@ fn side_of(it: Seen, front: bool) -> Side {
         let table = select(vec3f(0.8388, 0.8528, 0.8686), vec3f(0.045, 0.055, 0.07), view.shade.w < 0.5);
         colour = lit(side.eye, table, vec2f(mix(0.55, 1.0, light.x), light.y));
     } else if finish == TISSUE {
-        colour = tissue(side.eye, it.rest, extractBits(it.flags, 17u, 8u), light) * (1.0 - ink);
+        colour = tissue(side.eye, it.rest, extractBits(it.flags, 17u, 8u), light, pixel) * (1.0 - ink);
     } else {
         var value = of_value(it.value);
         if finish == BARED { value = mix(value, vec3f(0.7098, 0.3424, 0.2957), 0.72); }
         colour = lit(side.eye, value, light) * (1.0 - ink);
         // a field stays legible under the film
-        colour += 0.35 * view.range.w * film(side.eye, light);
+        colour += 0.35 * view.range.w * film(side.eye, light, 0.0);
     }
     return vec4f(colour, 1);
 }

@@ -1,5 +1,6 @@
 //! From the layers of a picture to triangles for a graphics device.
 
+use super::lent::Lent;
 use glam::Vec3;
 use sinew_pictures::render::{Camera, Colouring, Finish, Layer, Lines, of_corners};
 
@@ -25,6 +26,8 @@ pub struct Surface<'a> {
     pub normals: &'a [Vec3],
     /// Which kind of tissue it is made of, where no value colours it.
     pub tissue: Option<u8>,
+    /// Where its nodes are on the device, if it is drawn from there.
+    pub lent: Option<Lent<'a>>,
 }
 
 /// Triangles in the order in which they are drawn.
@@ -60,7 +63,7 @@ pub fn of(surfaces: &[Surface<'_>], camera: &Camera) -> Triangles {
     let mut all = Triangles::default();
     let casts = |finish: Finish| matches!(finish, Finish::Plain | Finish::Bared | Finish::Steel);
     let put = |wanted: &dyn Fn(Finish) -> bool, corners: &mut Vec<Corner>| {
-        let some = surfaces.iter().filter(|surface| wanted(surface.layer.finish));
+        let some = surfaces.iter().filter(|surface| surface.lent.is_none() && wanted(surface.layer.finish));
         some.for_each(|surface| add(surface, camera, corners));
         corners.len()
     };
@@ -68,6 +71,25 @@ pub fn of(surfaces: &[Surface<'_>], camera: &Camera) -> Triangles {
     all.solid = put(&|finish| !casts(finish) && !finish.is_clear(), &mut all.corners);
     put(&Finish::is_clear, &mut all.corners);
     all
+}
+
+/// The corners of a surface at rest, and of each its face and which of its points it is; 4: the middle.
+pub fn kept(surface: &Surface<'_>, camera: &Camera) -> (Vec<Corner>, Vec<[u32; 2]>) {
+    let (mut corners, mut sources) = (Vec::new(), Vec::new());
+    let at_rest =
+        surface.rest.len() == surface.layer.vertices.len() && surface.rest.iter().all(|place| place.is_finite());
+    if !at_rest {
+        return (corners, sources);
+    }
+    let layer = Layer { vertices: surface.rest, ..surface.layer };
+    add(&Surface { layer, lent: None, ..*surface }, camera, &mut corners);
+    for (number, face) in (0..).zip(surface.layer.faces) {
+        match face[2] == face[3] {
+            true => sources.extend([0, 1, 2].map(|point| [number, point])),
+            false => sources.extend((0..4).flat_map(|side| [4, side, (side + 1) % 4]).map(|point| [number, point])),
+        }
+    }
+    (corners, sources)
 }
 
 /// A quadrilateral is four triangles about its middle, so that none of its diagonals is favoured.

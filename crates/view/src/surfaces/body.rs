@@ -1,10 +1,10 @@
 //! The surfaces of one body.
 
 use super::lines;
-use crate::scene3d::Surface;
+use crate::scene3d::{Lent, Surface};
 use crate::settings::{Settings, number};
 use glam::Vec3;
-use sinew::driver::{Body, BodyState};
+use sinew::driver::{Body, BodyState, Loaded};
 use sinew::mesh::Cells;
 use sinew::mesh::topology::MOST_NODES;
 use sinew::scene::schema::OutputField;
@@ -26,6 +26,8 @@ pub struct BodyMesh {
     outer: (u64, Vec<Outer>),
     /// Where its nodes are drawn (m).
     pub vertices: Vec<Vec3>,
+    /// Whether it may be drawn from where its nodes are on the device.
+    pub lends: bool,
 }
 
 /// Faces of one finish.
@@ -44,12 +46,15 @@ pub struct Part {
     wireframe: bool,
     flat: Option<Vec3>,
     cut: bool,
+    /// Where it is drawn from where its nodes are on the device: of which body, and how many times as far moved.
+    pub lent: Option<(usize, f32)>,
 }
 
 /// What the faces of a body's own surface share.
 struct Common {
     values: Vec<f32>,
     tissue: Option<u8>,
+    lent: Option<(usize, f32)>,
 }
 
 impl BodyMesh {
@@ -68,6 +73,7 @@ impl BodyMesh {
             rest,
             ghost,
             places,
+            lends: false,
         }
     }
 
@@ -93,8 +99,10 @@ impl BodyMesh {
     ) {
         let values = field.map(|field| self.values(now, field, settings.component)).unwrap_or_default();
         let tissue = values.is_empty().then_some(number.min(255) as u8);
-        let common = Common { values, tissue };
         let skin = now.skin.as_ref().filter(|_| settings.skins);
+        // what has values, is cut or has lines that fade is made on the host
+        let lends = self.lends && values.is_empty() && skin.is_none() && plane.is_none() && !settings.wireframe;
+        let common = Common { values, tissue, lent: lends.then_some((number, settings.deformation)) };
         for bared in [false, true] {
             // where elements went the body's own faces close the hole
             let faces = self.outer.1.iter().filter(|face| face.bared == bared && (bared || skin.is_none()));
@@ -109,6 +117,9 @@ impl BodyMesh {
         if let Some(plane) = plane {
             parts.push(self.section(now, plane, settings.wireframe, &common));
         }
+        if settings.removed && now.alive.contains(&0) {
+            parts.push(self.removed_part(now));
+        }
         if settings.ghost {
             parts.push(Part {
                 vertices: self.rest.clone(),
@@ -122,7 +133,28 @@ impl BodyMesh {
                 wireframe: false,
                 flat: None,
                 cut: true,
+                lent: None,
             });
+        }
+    }
+
+    /// Elements that are gone, where their nodes are now.
+    fn removed_part(&self, now: &BodyState) -> Part {
+        let gone = |cell: u32| now.alive.get(cell as usize).filter(|alive| **alive == 0).map(|_| 0);
+        let faces: Vec<[u32; 4]> = self.faces.surface(gone, None).iter().map(|face| face.points).collect();
+        Part {
+            vertices: self.vertices.clone(),
+            rest: Vec::new(),
+            normals: Vec::new(),
+            sides: Some(vec![0b1111; faces.len()]),
+            faces,
+            values: Vec::new(),
+            finish: Finish::Ghost,
+            tissue: None,
+            wireframe: false,
+            flat: None,
+            cut: true,
+            lent: None,
         }
     }
 
@@ -139,6 +171,7 @@ impl BodyMesh {
             wireframe,
             flat: None,
             cut: true,
+            lent: common.lent,
         }
     }
 
@@ -190,6 +223,7 @@ impl BodyMesh {
             wireframe: false,
             flat: None,
             cut: true,
+            lent: None,
         }
     }
 
@@ -216,13 +250,18 @@ impl BodyMesh {
             wireframe: false,
             flat: Some(plane.normal),
             cut: false,
+            lent: None,
         }
     }
 }
 
 impl Part {
-    /// As it is drawn.
-    pub fn surface(&self) -> Surface<'_> {
+    /// As it is drawn, of a body of a scene.
+    pub fn surface<'a>(&'a self, loaded: Option<&'a Loaded>) -> Surface<'a> {
+        let lent = self.lent.and_then(|(body, deformation)| {
+            let column = loaded?.bodies.get(body)?.on_gpu.as_ref()?;
+            Some(Lent { column, deformation })
+        });
         let layer = Layer {
             vertices: &self.vertices,
             faces: &self.faces,
@@ -232,6 +271,6 @@ impl Part {
             flat: self.flat,
             cut: self.cut,
         };
-        Surface { layer, rest: &self.rest, normals: &self.normals, tissue: self.tissue }
+        Surface { layer, rest: &self.rest, normals: &self.normals, tissue: self.tissue, lent }
     }
 }
