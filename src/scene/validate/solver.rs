@@ -7,10 +7,14 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
     if scene_.search().is_some_and(|search| search.method == SearchMethod::Newton) {
         let word = if scene_.is_static() { "analysis" } else { "start" };
         let instead = format!("`method: Relaxation` in `{word}`");
-        if !scene_.contacts.is_empty() {
-            let message = "Newton's iterations cannot take part in contact, which puts nodes where they may be";
-            let note = format!("leave `contacts` out, or use {instead}");
-            validator.out.error_at(scene("contacts").index(0), message).note(note);
+        let lists = [
+            ("contacts", scene_.contacts.len(), "contact, which puts nodes where they may be from step to step"),
+            ("attachments", scene_.attachments.len(), "attachments, which break and hold from step to step"),
+        ];
+        for (list, _, what) in lists.into_iter().filter(|(_, count, _)| *count > 0) {
+            let message = format!("Newton's iterations cannot take part in {what}");
+            let note = format!("leave `{list}` out, or use {instead}");
+            validator.out.error_at(scene(list).index(0), message).note(note);
         }
         refused(scene_, "Newton's iterations", &instead, validator);
     }
@@ -63,15 +67,14 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
 
 /// What has a step of its own that knows central differences only.
 fn refused(scene_: &Scene, who: &str, instead: &str, validator: &mut Validator) {
-    let lists = [
-        ("suction", scene_.suction.len(), "suction, which keeps what was sucked from step to step"),
-        ("attachments", scene_.attachments.len(), "attachments, which break and hold from step to step"),
-    ];
-    for (list, _, what) in lists.into_iter().filter(|(_, count, _)| *count > 0) {
+    if !scene_.suction.is_empty() {
         validator
             .out
-            .error_at(scene(list).index(0), format!("{who} cannot take part in {what}"))
-            .note(format!("leave `{list}` out, or use {instead}"));
+            .error_at(
+                scene("suction").index(0),
+                format!("{who} cannot take part in suction, which keeps what was sucked from step to step"),
+            )
+            .note(format!("leave `suction` out, or use {instead}"));
     }
     for (name, _) in scene_.tools.iter().filter(|(_, tool)| tool.free.is_some()) {
         validator

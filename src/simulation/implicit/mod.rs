@@ -7,6 +7,7 @@ mod differences;
 mod equation;
 mod formula;
 mod free_motions;
+mod grasped;
 mod iterations;
 mod kept;
 mod newton;

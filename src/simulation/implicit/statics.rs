@@ -104,7 +104,7 @@ impl Statics {
         let Iterations { motion, space, .. } = &mut *iterations;
         axes.read(trial.world, motion);
         trial.world.resource_mut::<Signals>().approach(relaxation.end, [1.0, 1.0]);
-        trial.run(|phase| phase == Phase::Boundary)?;
+        trial.run(|pass| pass.phase == Phase::Boundary)?;
         super::step::held_axes(trial.world, axes, motion, &mut space.to_go);
         space.inertia.fill(0.0);
         space.constant.fill(0.0);

@@ -5,11 +5,12 @@ use super::super::explain::SolverInUse;
 use super::axes::{Axes, Motion};
 use super::differences::steps_to;
 use super::formula::Formula;
+use super::grasped::Grasped;
 use super::iterations::Iterations;
 use super::kept::Kept;
 use super::newton::{Found, Lost, Settings, Workspace};
 use super::report::ImplicitSteps;
-use super::trial::Trial;
+use super::trial::{Trial, is_of_forces};
 use super::work::Works;
 use crate::components::*;
 use crate::error::{Criterion, Error};
@@ -100,12 +101,13 @@ impl Implicit {
         }
         let times = [clock.time_at(clock.step), clock.time_at(clock.step + 1)];
         trial.world.resource_mut::<Signals>().evaluate((times[1], times[1]), times);
-        trial.run(|phase| phase == Phase::Boundary)?;
+        trial.run(|pass| pass.phase == Phase::Boundary && !is_of_forces(pass))?;
         if let Some(works) = works {
             works.begin(trial.world, axes);
         }
         trial.net(&mut space.net);
         held_axes(trial.world, axes, motion, &mut space.to_go);
+        let grasped = Grasped::hold(trial.world, axes, motion, &mut space.to_go);
         for axis in 0..space.w.len() {
             (space.inertia[axis], space.constant[axis]) = motion.equation(&formula, h, axis, space.net[axis]);
             space.w[axis] = motion.predicted(axis, h);
@@ -119,6 +121,7 @@ impl Implicit {
         if left.is_ok() {
             let Iterations { motion, space, kept, .. } = &mut *iterations;
             keep_forces(&mut trial, (&formula, h, motion), kept, space)?;
+            grasped.note(trial.world, (&formula, h, motion), space);
             let Workspace { w, step, acceleration, .. } = space;
             for axis in 0..w.len() {
                 let (velocity, of_axis) = motion.arrival(&formula, axis, h, w[axis]);
