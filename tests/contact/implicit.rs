@@ -46,7 +46,7 @@ fn a_block_at_rest_sinks_in_by_its_weight() {
 /// As explicit steps do it (`tool_friction`), with the distance that a mass slides in the same implicit steps.
 #[test]
 fn a_block_sticks_below_the_angle_of_friction_and_slides_beyond() {
-    let (friction, damping, g, h) = (0.5, 40.0, 9.81, 2e-3);
+    let (friction, damping, g, h) = (0.5, 40.0, 9.81, 2e-3_f64);
     for degrees in [20.0_f64, 25.0, 30.0, 40.0] {
         let (sin, cos) = degrees.to_radians().sin_cos();
         let mut simulation = start(
