@@ -16,6 +16,7 @@ impl App {
         let state = self.state.clone();
         ui.separator();
         match &state.picked {
+            None if self.source.finished().is_some() => drop(ui.weak("click: what is there")),
             None => drop(ui.weak("click: what is there\nctrl + drag: pull at the tissue")),
             Some(picked) => {
                 ui.heading(format!("{}, node {}", picked.pick.body, picked.node_number));
@@ -35,12 +36,15 @@ impl App {
                 ui.label(format!("{}: {force} N, {} nodes", tool.name, tool.felt.nodes));
             }
         }
-        ui.separator();
-        ui.heading("Energies");
-        let e = &state.energies;
-        let parts = [("kinetic", Some(e.kinetic)), ("strain", Some(e.strain)), ("work of loads", e.load_work)];
-        for (name, energy) in parts.iter().filter_map(|(name, energy)| Some((name, (*energy)?))) {
-            ui.label(format!("{name}: {} J", number(energy)));
+        // those of a finished run are in its plots
+        if self.source.finished().is_none() {
+            ui.separator();
+            ui.heading("Energies");
+            let e = &state.energies;
+            let parts = [("kinetic", Some(e.kinetic)), ("strain", Some(e.strain)), ("work of loads", e.load_work)];
+            for (name, energy) in parts.iter().filter_map(|(name, energy)| Some((name, (*energy)?))) {
+                ui.label(format!("{name}: {} J", number(energy)));
+            }
         }
         let notes = state.loaded.iter().flat_map(|loaded| &loaded.warnings).chain(&self.scenery.missing);
         notes.for_each(|note| drop(ui.weak(note)));
