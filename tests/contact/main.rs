@@ -16,8 +16,6 @@ mod frames;
 mod free_tools;
 mod glue;
 mod grasp;
-mod implicit;
-mod implicit_ties;
 mod ironing;
 mod lost_surfaces;
 mod surfaces;

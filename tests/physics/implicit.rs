@@ -350,7 +350,7 @@ fn what_implicit_steps_cannot_do_is_refused_by_name() {
         (
             "Implicit(step: 0.01)",
             "tools: {\"t\": (shape: Sphere(radius: 0.01), at: (0, 0, 1))}, contacts: [Tool(tool: \"t\", body: \"b\")]",
-            "the kinematic law corrects explicit steps, and there are none",
+            "implicit steps cannot take part in contact",
         ),
     ];
     for (solver, more, expected) in cases {
