@@ -169,8 +169,12 @@ fn rest_shapes_from_places_are_those_that_are_read() {
             integration: (step: 1e-4))"
         );
         let [patches, two_pass] = [Scheme::Patches, Scheme::TwoPass].map(|scheme| {
-            let options =
-                Options { scheme: Some(scheme), backend: BackendChoice::Cpu, precision: Precision::F32, ..Options::default() };
+            let options = Options {
+                scheme: Some(scheme),
+                backend: BackendChoice::Cpu,
+                precision: Precision::F32,
+                ..Options::default()
+            };
             let mut simulation = Configuration { name: "CPU", options }.start_in(&text, Path::new("."));
             let world = simulation.world_mut();
             let known = world.query::<&Patches>().iter(world).filter(|patches| !patches.places.is_empty()).count();

@@ -167,7 +167,11 @@ impl Gpu {
             index
         });
         self.last = Some(index);
-        self.wait()?;
+        if let Err(failed) = self.wait() {
+            // it may stay mapped: the next download has another
+            self.staging = None;
+            return Err(failed);
+        }
         let view = staging.get_mapped_range(0..total);
         let view = view.map_err(|e| GpuError::Device { during: "download".to_owned(), message: e.to_string() })?;
         let mut at = 0;
