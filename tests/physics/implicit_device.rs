@@ -200,7 +200,7 @@ fn systems_on_the_host_are_refused_by_name_on_a_gpu() {
     let registry = Registry::default().with(look);
     let text = cube("Implicit()", "Tet4", "", "").replacen(
         "(duration: 1,",
-        "(duration: 1, schedule: [\"element_forces\", \"gather\", \"gravity\", \"pressure\", \"look\", \"observe\"],",
+        "(duration: 1, schedule: [\"boundary\", \"element_forces\", \"gather\", \"gravity\", \"pressure\", \"look\", \"observe\"],",
         1,
     );
     let options = on(BackendChoice::Gpu, Precision::F32);
