@@ -2,7 +2,7 @@
 
 use super::elasticity::by_moduli;
 use super::{Elastic, Fibres, J_FLOOR, Kinematics, Law, Prerequisite};
-use crate::math::{Mat3, Real, Sym3, Task, dot, dot_plus, minor};
+use crate::math::{Mat3, Polar, Real, Sym3, Task, dot, dot_plus, minor};
 use crate::uniform::uniform;
 use bevy_ecs::component::Component;
 
@@ -195,7 +195,8 @@ impl<R: Real> Elastic<R> for Corotational<R> {
         stress
     }
 
-    /// The same with the principal stretches found once.
+    /// The same with the rotation alone: principal directions, which nothing else asks for here, take five times as
+    /// long.
     #[inline(always)]
     fn direct_stress(
         &self,
@@ -203,22 +204,24 @@ impl<R: Real> Elastic<R> for Corotational<R> {
         pressure: Option<R>,
         fibres: Option<(Fibres<R>, [R; 3])>,
     ) -> (Mat3<R>, R) {
-        let k = self.kinematics(gradient);
-        let principal = Principal::of(&k);
+        let polar = Polar::new(gradient);
+        let theta = polar.biot.trace();
         let pressure = match pressure {
             Some(pressure) => pressure,
-            None => self.pressure(principal.theta()),
+            None => self.pressure(theta),
         };
-        let mut stress = principal.turned(gradient, self.biot_stresses(&principal, pressure));
+        let twice = self.shear + self.shear;
+        let mean = twice.mul_add(theta * theta.constant(-1.0 / 3.0), pressure);
+        let mut stress = polar.turned(&polar.biot.scaled(twice).plus_diagonal(mean));
         if let Some((fibres, along)) = fibres {
-            let more = gradient.plus_identity_times(&fibres.isochoric(&k, along));
+            let more = gradient.plus_identity_times(&fibres.isochoric(&self.kinematics(gradient), along));
             for i in 0..3 {
                 for j in 0..3 {
                     stress.0[i][j] += more.0[i][j];
                 }
             }
         }
-        (stress, k.true_j)
+        (stress, theta.constant(1.0) + gradient.volume_change())
     }
 
     /// 2μ U⁻¹ dev B.

@@ -4,6 +4,7 @@
 mod broadcast;
 mod eigen;
 mod elementary;
+mod polar;
 mod real;
 mod rows;
 mod simd;
@@ -16,6 +17,7 @@ pub use simd::SimdScalar;
 pub use tensor::{Mat3, Sym3};
 
 // what the engine, the crates on top and tests see beside: no version keeps their names and types
+pub(crate) use polar::Polar;
 #[doc(hidden)]
 pub use real::{Task, refine_inverse_cbrt};
 #[doc(hidden)]
