@@ -126,8 +126,8 @@ struct Asks {
 const NOTHING: Asks = Asks { usual: 0, most: 0, of_steps: 0.0 };
 /// As counted: 2, and 60 to 64 in 2 to 4 steps of 136.
 const CONTACT: Asks = Asks { usual: 2, most: 70, of_steps: 0.05 };
-/// As counted: 37 to 52.
-const NEWTON: Asks = Asks { usual: 56, most: 0, of_steps: 0.0 };
+/// As counted: 49 to 65.
+const NEWTON: Asks = Asks { usual: 65, most: 0, of_steps: 0.0 };
 
 fn alive(simulation: &mut Simulation) -> u64 {
     let world = simulation.world_mut();

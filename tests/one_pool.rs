@@ -12,7 +12,7 @@ const SCENE: &str = r#"(duration: 0.02, materials: {"m": (density: 1000, neo_hoo
     tools: {"pick": (mesh: (path: "octahedron.obj", scale: 0.001), at: (0.01, 0.01, 0.027),
         moves: [(displacement: (0, 0, -3e-3), curve: Smooth(end: 0.02))])},
     contacts: [Tool(tool: "pick")],
-    integration: (when_unstable: ScaleMass(most: 0.3)),
+    integration: (step: 2.5e-4, when_unstable: ScaleMass(most: 0.3)),
     output: (fields_every: 0.01, fields: [Displacement, VonMises]))"#;
 
 #[test]

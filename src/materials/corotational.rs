@@ -1,7 +1,7 @@
 //! Hooke's law in the frame that turns with the material.
 
 use super::elasticity::by_moduli;
-use super::{Elastic, Fibres, J_FLOOR, Kinematics, Law, Prerequisite};
+use super::{Elastic, J_FLOOR, Kinematics, Law, Prerequisite};
 use crate::math::{Mat3, Polar, Real, Sym3, Task, dot, dot_plus, minor};
 use crate::uniform::uniform;
 use bevy_ecs::component::Component;
@@ -195,33 +195,16 @@ impl<R: Real> Elastic<R> for Corotational<R> {
         stress
     }
 
-    /// The same with the rotation alone: principal directions, which nothing else asks for here, take five times as
-    /// long.
+    /// From the rotation alone: principal directions, which nothing else asks for here, are found three times by way of
+    /// S.
     #[inline(always)]
-    fn direct_stress(
-        &self,
-        gradient: &Mat3<R>,
-        pressure: Option<R>,
-        fibres: Option<(Fibres<R>, [R; 3])>,
-    ) -> (Mat3<R>, R) {
+    fn alone(&self, gradient: &Mat3<R>) -> Option<(Mat3<R>, R)> {
         let polar = Polar::new(gradient);
         let theta = polar.biot.trace();
-        let pressure = match pressure {
-            Some(pressure) => pressure,
-            None => self.pressure(theta),
-        };
         let twice = self.shear + self.shear;
-        let mean = twice.mul_add(theta * theta.constant(-1.0 / 3.0), pressure);
-        let mut stress = polar.turned(&polar.biot.scaled(twice).plus_diagonal(mean));
-        if let Some((fibres, along)) = fibres {
-            let more = gradient.plus_identity_times(&fibres.isochoric(&self.kinematics(gradient), along));
-            for i in 0..3 {
-                for j in 0..3 {
-                    stress.0[i][j] += more.0[i][j];
-                }
-            }
-        }
-        (stress, theta.constant(1.0) + gradient.volume_change())
+        let mean = twice.mul_add(theta * theta.constant(-1.0 / 3.0), self.pressure(theta));
+        let stress = polar.turned(&polar.biot.scaled(twice).plus_diagonal(mean));
+        Some((stress, theta.constant(1.0) + gradient.volume_change()))
     }
 
     /// 2μ U⁻¹ dev B.

@@ -73,6 +73,13 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
         (self.first_stress(gradient, &k, &rest, pressure), k.true_j)
     }
 
+    /// The first Piola-Kirchhoff stress (Pa) and J of a law that is all there is at a point, with its own pressure, where
+    /// the law has a way that is much shorter than by S.
+    #[inline(always)]
+    fn alone(&self, _gradient: &Mat3<R>) -> Option<(Mat3<R>, R)> {
+        None
+    }
+
     /// S_iso (Pa): all of the second Piola-Kirchhoff stress that the pressure does not give.
     fn isochoric(&self, k: &Kinematics<R>) -> Sym3<R>;
 
@@ -194,6 +201,12 @@ macro_rules! elastic_laws {
             fn first_stress(&self, gradient: &Mat3<R>, k: &Kinematics<R>, isochoric: &Sym3<R>, pressure: R) -> Mat3<R> {
                 match self {
                     $(Self::$law(law) => law.first_stress(gradient, k, isochoric, pressure),)*
+                }
+            }
+            #[inline(always)]
+            fn alone(&self, gradient: &Mat3<R>) -> Option<(Mat3<R>, R)> {
+                match self {
+                    $(Self::$law(law) => law.alone(gradient),)*
                 }
             }
             #[inline(always)]

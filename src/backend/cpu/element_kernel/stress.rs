@@ -80,6 +80,11 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
         shared: T::Vector<S>,
     ) -> (Mat3<T::Vector<S>>, T::Vector<S>) {
         let elastic = &law.elastic;
+        if E::PRESSURE == PressureFrom::Point && self.law.is_elastic() {
+            if let Some(found) = simd.vectorize(Alone { elastic, gradient }) {
+                return found;
+            }
+        }
         let k = elastic.kinematics(gradient);
         let mut pressure = match E::PRESSURE {
             PressureFrom::Point => elastic.pressure(elastic.volume_measure(&k)),
@@ -118,6 +123,21 @@ impl<R: Real, L: Elastic<R>> WithSimd for Isochoric<'_, L, R> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Sym3<R> {
         self.elastic.isochoric(self.k)
+    }
+}
+
+/// Stress and J of a law that is all there is, likewise.
+struct Alone<'a, L, R> {
+    elastic: &'a L,
+    gradient: &'a Mat3<R>,
+}
+
+impl<R: Real, L: Elastic<R>> WithSimd for Alone<'_, L, R> {
+    type Output = Option<(Mat3<R>, R)>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        self.elastic.alone(self.gradient)
     }
 }
 
