@@ -1,5 +1,7 @@
 //! Which devices there are, and which of them to run on.
 
+use std::sync::OnceLock;
+
 use wgpu::{Adapter, Backends, DeviceType, Instance, InstanceDescriptor};
 
 use super::{AdapterReport, Choice, NoGpu};
@@ -35,12 +37,20 @@ impl AdapterReport {
     }
 }
 
+/// What finds devices, one for all of a process: to one that had made dozens the driver of an H200 showed none any more.
+fn instance() -> &'static Instance {
+    static INSTANCE: OnceLock<Instance> = OnceLock::new();
+    INSTANCE.get_or_init(|| {
+        let mut descriptor = InstanceDescriptor::new_without_display_handle();
+        descriptor.backends = Backends::VULKAN | Backends::METAL | Backends::DX12;
+        // validation layers cost time and write to the terminal; this layer checks what it passes on
+        descriptor.flags = wgpu::InstanceFlags::empty();
+        Instance::new(descriptor)
+    })
+}
+
 fn candidates() -> Vec<(Adapter, AdapterReport)> {
-    let mut descriptor = InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = Backends::VULKAN | Backends::METAL | Backends::DX12;
-    // validation layers cost time and write to the terminal; this layer checks what it passes on
-    descriptor.flags = wgpu::InstanceFlags::empty();
-    let adapters = pollster::block_on(Instance::new(descriptor).enumerate_adapters(Backends::all()));
+    let adapters = pollster::block_on(instance().enumerate_adapters(Backends::all()));
     let mut found: Vec<_> = adapters.into_iter().map(|a| (AdapterReport::of(&a), a)).map(|(r, a)| (a, r)).collect();
     // stable: the driver's own order decides among equals
     found.sort_by_key(|(_, report)| report.rank());
