@@ -223,7 +223,7 @@ impl<T: Scalar> See<'_, T> {
         let (count, mut numbers) = (now.len(), [T::default(); SIDE_BY_SIDE]);
         numbers[..count].copy_from_slice(now);
         if let Some(then) = then {
-            (0..count).for_each(|i| numbers[i] = numbers[i] - then[i]);
+            (0..count).for_each(|i| numbers[i] -= then[i]);
         }
         seen.see(&numbers, count);
     }
@@ -249,7 +249,7 @@ impl<T: Scalar> pulp::WithSimd for See<'_, T> {
                 Some((then, rest_then)) => {
                     for (now, then) in whole.iter().zip(then) {
                         let mut moved = *now;
-                        (0..SIDE_BY_SIDE).for_each(|i| moved[i] = moved[i] - then[i]);
+                        (0..SIDE_BY_SIDE).for_each(|i| moved[i] -= then[i]);
                         seen.see(&moved, SIDE_BY_SIDE);
                     }
                     Self::some(&mut seen, rest, Some(rest_then));

@@ -80,10 +80,11 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
         shared: T::Vector<S>,
     ) -> (Mat3<T::Vector<S>>, T::Vector<S>) {
         let elastic = &law.elastic;
-        if E::PRESSURE == PressureFrom::Point && self.law.is_elastic() {
-            if let Some(found) = simd.vectorize(Alone { elastic, gradient }) {
-                return found;
-            }
+        if E::PRESSURE == PressureFrom::Point
+            && self.law.is_elastic()
+            && let Some(found) = simd.vectorize(Alone { elastic, gradient })
+        {
+            return found;
         }
         let k = elastic.kinematics(gradient);
         let mut pressure = match E::PRESSURE {
