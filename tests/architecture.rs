@@ -243,6 +243,7 @@ fn every_system_is_a_file_of_its_name_and_a_line_of_the_step() {
                 "node_pass",
                 "node_shares",
                 "node_slices",
+                "node_slopes",
                 "node_stages",
                 "node_system",
                 "node_views",

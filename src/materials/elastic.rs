@@ -73,8 +73,8 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
         (self.first_stress(gradient, &k, &rest, pressure), k.true_j)
     }
 
-    /// The first Piola-Kirchhoff stress (Pa) and J of a law that is all there is at a point, with its own pressure, where
-    /// the law has a way that is much shorter than by S.
+    /// The first Piola-Kirchhoff stress (Pa) and J of a law that is all there is at a point, with its own pressure,
+    /// where the law has a way that is much shorter than by S.
     #[inline(always)]
     fn alone(&self, _gradient: &Mat3<R>) -> Option<(Mat3<R>, R)> {
         None

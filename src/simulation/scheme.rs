@@ -7,8 +7,9 @@ use std::collections::BTreeMap;
 use std::fmt::{Display, Formatter};
 
 /// Patches that fill a GPU. Fewer leave most of it idle while each workgroup sums round after round, and two passes,
-/// whose elements and nodes are all independent, take half to three quarters of the time in spite of their traffic; from
-/// about here on patches win, fourfold in the end (docs/performance.md, measured on an H200 of 132 multiprocessors).
+/// whose elements and nodes are all independent, take half to three quarters of the time in spite of their traffic;
+/// from about here on patches win, threefold in the end (docs/performance.md, measured on an H200 of 132
+/// multiprocessors).
 const FILLING: usize = 256;
 
 /// Makes room for the element forces of all bodies, in another scheme than before.

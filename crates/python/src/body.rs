@@ -3,7 +3,6 @@
 use crate::arrays;
 use crate::reading;
 use crate::simulation::{Run, Simulation};
-use glam::DVec3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};

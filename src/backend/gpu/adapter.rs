@@ -37,7 +37,8 @@ impl AdapterReport {
     }
 }
 
-/// What finds devices, one for all of a process: to one that had made dozens the driver of an H200 showed none any more.
+/// What finds devices, one for all of a process: to one that had made dozens the driver of an H200 showed none any
+/// more.
 fn instance() -> &'static Instance {
     static INSTANCE: OnceLock<Instance> = OnceLock::new();
     INSTANCE.get_or_init(|| {
