@@ -156,6 +156,20 @@ pub const ATTACHMENTS: [&str; 9] = [
     "suture_tension_pull",
 ];
 
+/// Texts of conjugate gradients, whose kernels are made when a step is solved for; `physics implicit_device` runs them.
+#[allow(dead_code)]
+pub const CONJUGATE_GRADIENTS: [&str; 9] = [
+    "coarse_level",
+    "coarse_motion",
+    "coarse_solve",
+    "conjugate_gradients",
+    "gradient_image",
+    "gradient_scalars",
+    "gradient_vectors",
+    "gradient_velocity",
+    "precondition",
+];
+
 /// Two blocks that are glued, tied and sutured.
 pub fn attached(more: &str) -> Simulation {
     let text = format!(
