@@ -157,7 +157,6 @@ pub const ATTACHMENTS: [&str; 9] = [
 ];
 
 /// Texts of conjugate gradients, whose kernels are made when a step is solved for; `physics implicit_device` runs them.
-#[allow(dead_code)]
 pub const CONJUGATE_GRADIENTS: [&str; 9] = [
     "coarse_level",
     "coarse_motion",
