@@ -11,7 +11,6 @@
 
 var<workgroup> forces: array<vec3<f32>, 64>;
 var<workgroup> moments: array<vec3<f32>, 64>;
-var<workgroup> products: array<f32, 64>;
 
 @compute @workgroup_size(64)
 fn restrict_residual(
@@ -65,15 +64,8 @@ fn solve_coarse(
             product += coarse_inverse[at + i] * coarse_forces[first + i];
         }
     }
-    products[local] = product;
-    workgroupBarrier();
-    for (var width = 32u; width > 0u; width /= 2u) {
-        if local < width {
-            products[local] += products[local + width];
-        }
-        workgroupBarrier();
-    }
+    let of_group = sum_of_group(local, vec2<f32>(product, 0.0));
     if local == 0u && unknown < extent.unknowns {
-        coarse_motions[unknown] = products[0];
+        coarse_motions[unknown] = of_group.x;
     }
 }

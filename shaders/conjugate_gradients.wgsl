@@ -26,6 +26,20 @@ struct Extent {
 @group(0) @binding(1) var<uniform> extent: Extent;
 @group(0) @binding(2) var<storage, read_write> partials: array<vec2<f32>>; // a workgroup each
 
+var<workgroup> sums: array<vec2<f32>, 64>;
+
+// The sum over a workgroup of 64, which all of them must ask for.
+fn sum_of_group(local: u32, own: vec2<f32>) -> vec2<f32> {
+    sums[local] = own;
+    workgroupBarrier();
+    for (var width = 32u; width > 0u; width /= 2u) {
+        if local < width {
+            sums[local] += sums[local + width];
+        }
+        workgroupBarrier();
+    }
+    return sums[0];
+}
 
 fn is_number(x: f32) -> bool {
     return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;

@@ -15,8 +15,6 @@ struct Part {
 @group(0) @binding(9) var<storage, read> inertia: array<f32>; // D (N/m); below 0 where an axis is not free
 @group(0) @binding(10) var<storage, read_write> image: array<f32>;
 
-var<workgroup> products: array<f32, 64>;
-
 // w + ε p.
 @compute @workgroup_size(64)
 fn displace(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -58,16 +56,9 @@ fn image_of(
             product += q * direction[at];
         }
     }
-    products[local] = product;
-    workgroupBarrier();
-    for (var width = 32u; width > 0u; width /= 2u) {
-        if local < width {
-            products[local] += products[local + width];
-        }
-        workgroupBarrier();
-    }
+    let of_group = sum_of_group(local, vec2<f32>(product, 0.0));
     let group = patch_row(group_id, groups);
     if local == 0u && group < part.groups {
-        partials[part.first_group + group] = vec2<f32>(products[0], 0.0);
+        partials[part.first_group + group] = of_group;
     }
 }

@@ -1,7 +1,7 @@
 // The numbers of conjugate gradients, each by one workgroup from the sums of all; see conjugate_gradients.wgsl. STRAIN
 // is generated.
 const ADDING: u32 = 256u;
-var<workgroup> sums: array<vec2<f32>, ADDING>;
+var<workgroup> added: array<vec2<f32>, ADDING>;
 var<workgroup> largest: array<f32, ADDING>;
 
 // Uniform: all invocations of the workgroup. The sum is known to the first.
@@ -10,15 +10,15 @@ fn sum_of_partials(local: u32, count: u32) -> vec2<f32> {
     for (var i = local; i < count; i += ADDING) {
         sum += partials[i];
     }
-    sums[local] = sum;
+    added[local] = sum;
     workgroupBarrier();
     for (var width = ADDING / 2u; width > 0u; width /= 2u) {
         if local < width {
-            sums[local] += sums[local + width];
+            added[local] += added[local + width];
         }
         workgroupBarrier();
     }
-    return sums[0];
+    return added[0];
 }
 
 // β of the next direction; ends where the residual is small enough.

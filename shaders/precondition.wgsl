@@ -6,8 +6,6 @@
 @group(0) @binding(5) var<storage, read_write> preconditioned: array<f32>;
 @group(0) @binding(6) var<storage, read> inertia: array<f32>; // below 0 where an axis is not free
 
-var<workgroup> sums: array<vec2<f32>, 64>;
-
 @compute @workgroup_size(64)
 fn precondition(
     @builtin(global_invocation_id) id: vec3<u32>,
@@ -34,16 +32,9 @@ fn precondition(
         preconditioned[at + 2u] = z.z;
         sum = vec2<f32>(dot(r, z), dot(r, r));
     }
-    sums[local] = sum;
-    workgroupBarrier();
-    for (var width = 32u; width > 0u; width /= 2u) {
-        if local < width {
-            sums[local] += sums[local + width];
-        }
-        workgroupBarrier();
-    }
+    let of_group = sum_of_group(local, sum);
     let group = patch_row(group_id, groups);
     if local == 0u && group < extent.groups {
-        partials[group] = sums[0];
+        partials[group] = of_group;
     }
 }

@@ -5,7 +5,7 @@
 
 use crate::columns::{masses, velocities};
 use crate::configurations::{near, scene_of};
-use crate::implicit::{SQUARE, oscillator_on, top};
+use crate::implicit::{oscillates_as_its_closed_form, oscillator_on};
 use glam::DVec3;
 use sinew::backend::gpu::gpu_or_reason;
 use sinew::components::Precision;
@@ -94,22 +94,13 @@ fn gpus_repeat_steps_to_the_bit() {
     assert!(runs[0] == runs[1]);
 }
 
-/// x_n = Im zⁿ v₀/ω with z = 1/(1 − iωh). Of f32 a force is known to its digit, 6e-8 of the largest in a step; in 40
-/// steps that is 2.4e-6, and half a dozen of such digits are in each.
+/// Of f32 a force is known to its digit, 6e-8 of the largest in a step; in 40 steps that is 2.4e-6, and half a dozen of
+/// such digits are in each.
 #[test]
 fn one_degree_of_freedom_is_its_closed_form_on_a_gpu() {
     let Some(gpu) = gpu() else { return };
     let solver = "Implicit(scheme: Euler, step: 0.01, newton: 8, tolerance: 1e-7)";
-    let mut simulation = oscillator_on(solver, "", &gpu);
-    let (h, omega) = (0.01, SQUARE.sqrt());
-    let (modulus, phase) = ((1.0 + SQUARE * h * h).powf(-0.5), (omega * h).atan());
-    for n in 1..=40 {
-        simulation.advance(1).unwrap();
-        let size = 1e-3 * modulus.powi(n);
-        let [x, v] = top(&mut simulation);
-        near("displacement", x, size * (phase * f64::from(n)).sin() / omega, 1e-3 / omega, 1.5e-5);
-        near("velocity", v, size * (phase * f64::from(n)).cos(), 1e-3, 1.5e-5);
-    }
+    oscillates_as_its_closed_form(oscillator_on(solver, "", &gpu), 1.5e-5);
 }
 
 /// Iterations of conjugate gradients to the same tolerance are those of the CPU, but for rounding.
