@@ -55,8 +55,7 @@ pub fn oscillates_as_its_closed_form(mut simulation: Simulation, tolerance: f64)
     let (modulus, phase) = ((1.0 + SQUARE * h * h).powf(-0.5), (omega * h).atan());
     for n in 1..=40 {
         simulation.advance(1).unwrap();
-        let size = 1e-3 * modulus.powi(n);
-        let [x, v] = top(&mut simulation);
+        let (size, [x, v]) = (1e-3 * modulus.powi(n), top(&mut simulation));
         near("displacement", x, size * (phase * f64::from(n)).sin() / omega, 1e-3 / omega, tolerance);
         near("velocity", v, size * (phase * f64::from(n)).cos(), 1e-3, tolerance);
     }
