@@ -59,17 +59,16 @@ impl<R: Real> Task<R> for FindPrincipal<'_, R> {
             }
         }
         axes[2] = cross(axes[0], axes[1]);
-        let root = |strain: R| (two.mul_add(strain, one)).max(zero).sqrt();
-        let [first, second] = [root(strains[0]), root(strains[1])];
+        let first = two.mul_add(strains[0], one).max(zero).sqrt();
+        let second = two.mul_add(strains[1], one).max(zero).sqrt();
         // C does not know the sign, and where it is nearly singular not even the size
         let tiny = one.constant(f64::from(f32::MIN_POSITIVE));
         let least = first.min(second);
         let last = (k.true_j / (first * second).max(tiny)).max(-least).min(least);
         // s − 1 = 2E/(1 + s)
-        let biot = |strain: R, stretch: R| two * strain / (one + stretch).max(one);
-        let of_last = (last - one.constant(0.5)).if_positive(biot(strains[2], last), last - one);
+        let of_last = (last - one.constant(0.5)).if_positive(two * strains[2] / (one + last).max(one), last - one);
         Principal {
-            biot: [biot(strains[0], first), biot(strains[1], second), of_last],
+            biot: [two * strains[0] / (one + first).max(one), two * strains[1] / (one + second).max(one), of_last],
             stretches: [first, second, last],
             axes,
         }
@@ -79,6 +78,12 @@ impl<R: Real> Task<R> for FindPrincipal<'_, R> {
 #[inline(always)]
 fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
     [minor(a[1], a[2], b[1], b[2]), minor(a[2], a[0], b[2], b[0]), minor(a[0], a[1], b[0], b[1])]
+}
+
+/// F n of ∇u.
+#[inline(always)]
+fn deformed<R: Real>(h: &[[R; 3]; 3], n: [R; 3]) -> [R; 3] {
+    [dot_plus(h[0], n, n[0]), dot_plus(h[1], n, n[1]), dot_plus(h[2], n, n[2])]
 }
 
 /// A vector of length 1; nothing of nothing.
@@ -130,9 +135,8 @@ impl<R: Real> Principal<R> {
     fn turned(&self, gradient: &Mat3<R>, values: [R; 3]) -> Mat3<R> {
         let h = &gradient.0;
         let [n0, n1, n2] = self.axes;
-        let deformed = |n: [R; 3]| [dot_plus(h[0], n, n[0]), dot_plus(h[1], n, n[1]), dot_plus(h[2], n, n[2])];
-        let first = unit(deformed(n0));
-        let second = deformed(n1);
+        let first = unit(deformed(h, n0));
+        let second = deformed(h, n1);
         let along = dot(first, second);
         let second = unit([
             (-along).mul_add(first[0], second[0]),

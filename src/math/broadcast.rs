@@ -13,13 +13,24 @@ pub(super) fn broadcast3_f32s<S: Simd>(simd: S, numbers: S::f32s) -> [S::f32s; 3
     {
         if let Some(v4) = coerced::<S, V4>(simd) {
             let numbers = bytemuck::cast(numbers);
-            return const { places::<16>() }
-                .map(|places| bytemuck::cast(v4.avx512f._mm512_permutexvar_ps(bytemuck::cast(places), numbers)));
+            let [a, b, c] = const { places::<16>() };
+            // no closure: those do not get the instructions
+            macro_rules! at {
+                ($places:expr) => {
+                    v4.avx512f._mm512_permutexvar_ps(bytemuck::cast($places), numbers)
+                };
+            }
+            return bytemuck::cast([at!(a), at!(b), at!(c)]);
         }
         if let Some(v3) = coerced::<S, V3>(simd) {
             let numbers = bytemuck::cast(numbers);
-            return const { places::<8>() }
-                .map(|places| bytemuck::cast(v3.avx2._mm256_permutevar8x32_ps(numbers, bytemuck::cast(places))));
+            let [a, b, c] = const { places::<8>() };
+            macro_rules! at {
+                ($places:expr) => {
+                    v3.avx2._mm256_permutevar8x32_ps(numbers, bytemuck::cast($places))
+                };
+            }
+            return bytemuck::cast([at!(a), at!(b), at!(c)]);
         }
     }
     let mut spread = [simd.splat_f32s(0.0); 3];

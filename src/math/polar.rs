@@ -113,12 +113,23 @@ fn determinant<R: Real>([xx, yy, zz, xy, yz, xz]: &[R; 6]) -> R {
     dot([*xx, *xy, *xz], [minor(*yy, *yz, *yz, *zz), minor(*xz, *zz, *xy, *yz), minor(*xy, *yy, *xz, *yz)])
 }
 
+// Functions, where closures would read more easily: those do not get a kernel's instructions.
+
+#[inline(always)]
+fn sum_of_squares<R: Real>(m: &[[R; 3]; 3]) -> R {
+    dot_plus(m[0], m[0], dot_plus(m[1], m[1], dot(m[2], m[2])))
+}
+
+#[inline(always)]
+fn column<R: Real>(m: &[[R; 3]; 3], j: usize) -> [R; 3] {
+    [m[0][j], m[1][j], m[2][j]]
+}
+
 /// λ of F with its cofactors.
 #[inline(always)]
 fn sum_of_stretches<R: Real>(f: &[[R; 3]; 3], cofactor: &[[R; 3]; 3]) -> R {
     let (two, three, four) = (f[0][0].constant(2.0), f[0][0].constant(3.0), f[0][0].constant(4.0));
-    let squares = |m: &[[R; 3]; 3]| dot_plus(m[0], m[0], dot_plus(m[1], m[1], dot(m[2], m[2])));
-    let (stretch, area) = (squares(f), squares(cofactor));
+    let (stretch, area) = (sum_of_squares(f), sum_of_squares(cofactor));
     let eight_j = (four + four) * dot(f[0], cofactor[0]);
     let tiny = two.constant(f64::from(f32::MIN_POSITIVE));
     // (Σ sᵢsⱼ)² = Σ (sᵢsⱼ)² + 2 λ J, and ≤ 3 Σ (sᵢsⱼ)²; and no stretch is more than their sum
@@ -154,16 +165,19 @@ fn turn<R: Real>(w: R, q: [R; 3]) -> Mat3<R> {
 /// The symmetric part of RᵀF − I with F − I and R − I.
 #[inline(always)]
 fn biot<R: Real>(h: &[[R; 3]; 3], turn: &Mat3<R>) -> Sym3<R> {
-    let column = |m: &[[R; 3]; 3], j: usize| [m[0][j], m[1][j], m[2][j]];
-    let entry = |i: usize, j: usize| dot_plus(column(&turn.0, i), column(h, j), h[i][j] + turn.0[j][i]);
+    macro_rules! entry {
+        ($i:literal, $j:literal) => {
+            dot_plus(column(&turn.0, $i), column(h, $j), h[$i][$j] + turn.0[$j][$i])
+        };
+    }
     let half = h[0][0].constant(0.5);
     Sym3([
-        entry(0, 0),
-        entry(1, 1),
-        entry(2, 2),
-        half * (entry(0, 1) + entry(1, 0)),
-        half * (entry(1, 2) + entry(2, 1)),
-        half * (entry(0, 2) + entry(2, 0)),
+        entry!(0, 0),
+        entry!(1, 1),
+        entry!(2, 2),
+        half * (entry!(0, 1) + entry!(1, 0)),
+        half * (entry!(1, 2) + entry!(2, 1)),
+        half * (entry!(0, 2) + entry!(2, 0)),
     ])
 }
 

@@ -36,10 +36,10 @@ pub(super) fn load_f32s<S: Simd>(simd: S, rows: &Rows<f32>, at: &[u16]) -> [S::f
     #[cfg(target_arch = "x86_64")]
     {
         if let (Some(v4), Some(at)) = (coerced::<S, V4>(simd), at.first_chunk()) {
-            return x86::columns_512(v4, rows, at).map(bytemuck::cast);
+            return bytemuck::cast(x86::columns_512(v4, rows, at));
         }
         if let (Some(v3), Some(at)) = (coerced::<S, V3>(simd), at.first_chunk()) {
-            return x86::columns_256(v3, rows, at).map(bytemuck::cast);
+            return bytemuck::cast(x86::columns_256(v3, rows, at));
         }
     }
     let mut columns = [simd.splat_f32s(0.0); 4];
@@ -58,10 +58,10 @@ pub(super) fn add_f32s<S: Simd>(simd: S, rows: &mut Rows<f32>, at: &[u16], vecto
     #[cfg(target_arch = "x86_64")]
     {
         if let (Some(v4), Some(at)) = (coerced::<S, V4>(simd), at.first_chunk()) {
-            return x86::add_512(v4, rows, at, vectors.map(bytemuck::cast));
+            return x86::add_512(v4, rows, at, bytemuck::cast(vectors));
         }
         if let (Some(v3), Some(at)) = (coerced::<S, V3>(simd), at.first_chunk()) {
-            return x86::add_256(v3, rows, at, vectors.map(bytemuck::cast));
+            return x86::add_256(v3, rows, at, bytemuck::cast(vectors));
         }
     }
     let _ = simd;

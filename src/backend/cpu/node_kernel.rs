@@ -175,12 +175,15 @@ impl<T: SimdScalar> Constants<'_, T> {
             [[ax, sx], [ay, sy], [az, sz]]
         });
         let [dx, dy, dz] = match damping {
-            Some(damping) => damping.map(Some),
+            Some([x, y, z]) => [Some(x), Some(y), Some(z)],
             None => [None; 3],
         };
         let [fx, fy, fz] = match self.axes.iter().fold(0, |all, axes| all | axes) {
             0 => [None; 3],
-            _ => self.free(simd).map(Some),
+            _ => {
+                let [x, y, z] = self.free(simd);
+                [Some(x), Some(y), Some(z)]
+            }
         };
         [
             OfComponents { per_mass: x, damping: dx, free: fx },

@@ -106,17 +106,21 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
             }};
         }
         let (x, a, b, c) = (place!(0), place!(1), place!(2), place!(3));
-        let [a, b, c] = [a, b, c].map(
-            #[inline(always)]
-            |end| [end[0] - x[0], end[1] - x[1], end[2] - x[2]],
-        );
+        macro_rules! from_x {
+            ($end:ident) => {
+                [$end[0] - x[0], $end[1] - x[1], $end[2] - x[2]]
+            };
+        }
+        let (a, b, c) = (from_x!(a), from_x!(b), from_x!(c));
         let cofactors = [cross(b, c), cross(c, a), cross(a, b)];
         let scale = x[0].constant(factor) / dot(a, cofactors[0]);
-        let [[c0, c1, c2], [c3, c4, c5], [c6, c7, c8]] = cofactors;
-        Some([c0, c1, c2, c3, c4, c5, c6, c7, c8].map(
-            #[inline(always)]
-            |cofactor| cofactor * scale,
-        ))
+        let mut gradients = [scale; GRADIENTS];
+        for (i, cofactors) in cofactors.iter().enumerate() {
+            for (j, &cofactor) in cofactors.iter().enumerate() {
+                gradients[3 * i + j] = cofactor * scale;
+            }
+        }
+        Some(gradients)
     }
 
     /// The patch-local sums of forces: to the nodes inside that move now, all others to where patches are gathered.
