@@ -33,6 +33,7 @@ mod implicit;
 mod implicit_device;
 mod implicit_forms;
 mod implicit_lens;
+mod implicit_tetrahedron;
 mod inputs;
 mod inversion;
 mod islands;
