@@ -22,6 +22,8 @@ pub enum Failure {
     TargetUnclear,
     /// A plot could not be drawn.
     Plot(sinew_pictures::plot::PlotError),
+    /// Results could not be read or written: which file, and why.
+    Results(String),
     /// The result could not be said.
     Silent(std::io::Error),
     /// The viewer ended with this status; what there is to say it has said.
@@ -49,7 +51,7 @@ impl Failure {
             Failure::Plot(_) => 3,
             Failure::TargetMissed => 5,
             Failure::TargetUnclear => 6,
-            Failure::Silent(_) => 3,
+            Failure::Silent(_) | Failure::Results(_) => 3,
             Failure::Viewer(status) => *status,
             Failure::Interrupted => 130,
         }
@@ -63,7 +65,7 @@ impl Failure {
                 error => complain(&error.to_string()),
             },
             Failure::Picture(error) => complain(&error.to_string()),
-            Failure::Options(text) | Failure::Broke(text) => complain(text),
+            Failure::Options(text) | Failure::Broke(text) | Failure::Results(text) => complain(text),
             Failure::Plot(error) => complain(&error.to_string()),
             Failure::Silent(error) => complain(&format!("cannot write to the standard output: {error}")),
             Failure::Interrupted | Failure::TargetMissed | Failure::TargetUnclear | Failure::Viewer(_) => {}

@@ -18,6 +18,7 @@ mod render;
 mod report;
 mod run;
 mod stability;
+mod sweep;
 mod terminal;
 mod unload;
 mod view;
@@ -50,6 +51,7 @@ fn main() -> ExitCode {
         Command::Render(arguments) => render::command(&arguments),
         Command::View(arguments) => view::command(&arguments),
         Command::Accuracy(arguments) => accuracy::command(&arguments),
+        Command::Sweep(arguments) => sweep::command(&arguments),
         Command::Hard(arguments) => hard::command(&arguments),
         Command::Bench(arguments) => bench::command(&arguments),
         Command::Completions { shell } => manual::completions(shell),

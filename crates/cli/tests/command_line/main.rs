@@ -11,6 +11,7 @@ mod interrupted;
 mod locked;
 mod renders;
 mod runs;
+mod sweeps;
 mod threads;
 mod unloads;
 mod views;
