@@ -10,6 +10,7 @@ mod look;
 mod meet;
 mod memory;
 mod motion;
+mod solved;
 mod survey;
 
 use super::node_slices::BodyColumns;
@@ -272,12 +273,24 @@ fn surface_contact(
 ) -> Result<(), Error> {
     let contacts = &mut *contacts;
     survey::follow(contacts, &mut bodies, &authorings, &blocks);
+    let figures = contacts.surface.figures;
     let precision = bodies.iter().next().map(|(_, columns)| columns.nodes.u.precision());
-    match precision {
+    let done = match precision {
         Some(Precision::F32) => step::<f32>(contacts, (&clock, &cpu), &mut bodies),
         Some(Precision::F64) => step::<f64>(contacts, (&clock, &cpu), &mut bodies),
         None => Ok(()),
+    };
+    if tries(&clock) {
+        // that is no step
+        let Figures { builds, building, .. } = contacts.surface.figures;
+        contacts.surface.figures = Figures { builds, building, ..figures };
     }
+    done
+}
+
+/// Whether forces are only tried, of an implicit step.
+fn tries(clock: &Clock) -> bool {
+    clock.springs.is_some_and(|springs| !springs.noted)
 }
 
 fn step<T: Scalar>(
@@ -300,8 +313,10 @@ fn step<T: Scalar>(
     }
     if !faced::wake(contacts, reach) && contacts.surface.crossings.near.is_empty() {
         contacts.surface.figures.asleep += 1;
-        meet::release(&mut contacts.surface, &mut bodies);
-        meet::forget(contacts, &[], &mut bodies);
+        if !tries(clock) {
+            meet::release(&mut contacts.surface, &mut bodies);
+            meet::forget(contacts, &[], &mut bodies);
+        }
         return Ok(());
     }
     motion::update_places(contacts, &bodies, cpu);
@@ -310,7 +325,10 @@ fn step<T: Scalar>(
     }
     faced::face(contacts, reach, cpu);
     crossings::find(contacts, reach);
-    meet::meet(contacts, (clock, cpu), &mut bodies);
+    match &clock.springs {
+        Some(springs) => solved::press(contacts, (clock, springs), &mut bodies),
+        None => meet::meet(contacts, (clock, cpu), &mut bodies),
+    }
     contacts.surface.figures.examined += contacts.surface.found.len() as u64;
     contacts.surface.figures.contacts += contacts.surface.gathered.set.contacts.len() as u64;
     Ok(())

@@ -59,6 +59,8 @@ fn suture_tension(
     mut bodies: Query<SuturedColumns>,
     blocks: Query<&Alive>,
 ) {
+    // forces that are only tried leave everything as it is
+    let noted = clock.springs.is_none_or(|springs| springs.noted);
     for mut columns in &mut bodies {
         columns.sutured.forces.fill(DVec3::ZERO);
     }
@@ -87,13 +89,19 @@ fn suture_tension(
             None if whole >= suture.strength => TORE,
             _ => HOLDS,
         };
-        let tension = if becomes == HOLDS { left * whole } else { 0.0 };
+        // an implicit step is found with the force of a thread that tears at its end
+        let pulls = becomes == HOLDS || clock.springs.is_some();
+        let tension = if pulls { left * whole } else { 0.0 };
         if tension > 0.0 {
             let force = way * (tension / length);
             pull(first, force, &mut bodies);
             pull(second, -force, &mut bodies);
         }
+        if !noted {
+            continue;
+        }
         let Some(mut state) = bodies.get_mut(first.body).ok().and_then(|columns| columns.state) else { continue };
+        let tension = if becomes == HOLDS { tension } else { 0.0 };
         state.set(at + 2, tension);
         state.set(at + 3, length);
         if becomes != HOLDS {

@@ -1,6 +1,7 @@
 //! `tool_contact`: rigid tools keep nodes outside. `shaders/tool_contact.wgsl` is its twin.
 
 mod row;
+mod solved;
 mod stage;
 mod sweep;
 
@@ -57,6 +58,9 @@ pub struct ContactStep {
     out: f64,
     /// Whether work is counted: not on the way to rest.
     counts_work: bool,
+    /// Δt (s), and how springs press in it where it is implicit.
+    time: f64,
+    springs: Option<SolvedSprings>,
     /// As many as there are, and then anything.
     tools: [ToolInStep; ToolContacts::MOST],
 }
@@ -132,6 +136,8 @@ impl NodeSystem for ToolContacts {
             coefficients: IntegrationCoefficients::of(before.clock),
             out: self.out(before.clock),
             counts_work: before.clock.relaxation.is_none(),
+            time: before.clock.time_step,
+            springs: before.clock.springs,
             tools,
         }
     }
@@ -146,7 +152,11 @@ impl NodeSystem for ToolContacts {
         let own = places_within(&self.rows, nodes.first, nodes.rows());
         for (place, (&row, &mask)) in self.rows[own.clone()].iter().zip(&self.masks[own]).enumerate() {
             let values = &mut touches.values[touches.numbers * place..touches.numbers * (place + 1)];
-            self.touch(step, row as usize - nodes.first, mask, nodes, values);
+            let row = row as usize - nodes.first;
+            match &step.springs {
+                Some(springs) => self.press((step, springs), (row, mask), nodes, values),
+                None => self.touch(step, row, mask, nodes, values),
+            }
         }
         nodes.touches = Some(touches);
     }

@@ -54,7 +54,7 @@ pub use block::{
     OnInversion, RemovalTime, RemovedEnergy, RemovedMomentum, RemovedWork, patch_groups, patch_length,
 };
 #[doc(hidden)]
-pub use clock::{Relaxation, TrialForces};
+pub use clock::{Relaxation, SolvedSprings, TrialForces};
 #[doc(hidden)]
 pub use column::{ColumnAccess, Role, all_columns, columns_in, place_in_buffer};
 #[doc(hidden)]
@@ -62,7 +62,7 @@ pub use column_layout::{Increments, Rows};
 #[doc(hidden)]
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
 #[doc(hidden)]
-pub use contact::{ContactForce, ContactSpring, FaceTouch, MEETING_NUMBERS, SurfaceRows, SurfaceTouch};
+pub use contact::{ContactForce, ContactSpring, FaceTouch, MEETING_NUMBERS, SolvedPress, SurfaceRows, SurfaceTouch};
 #[doc(hidden)]
 pub use free_tool::{FreeMotion, FreeMotions, FreeTool, FreeTools, FreeTouch, MetBody};
 #[doc(hidden)]

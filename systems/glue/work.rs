@@ -127,6 +127,12 @@ impl Work {
         (solved.holds, solved.off, solved.force) = (true, point - belongs, DVec3::ZERO);
     }
 
+    /// Finds the forces of springs in place of ties, whose nodes are where they are tried.
+    pub fn press(&mut self, springs: &SolvedSprings) {
+        self.set.press(&self.masses, (springs.step * springs.step).recip());
+        self.set.steps.clone_from(&self.before);
+    }
+
     /// Adds the forces to the loads of nodes that are tied.
     pub fn push(&self, glue: &Glue, bodies: &mut Query<TiedColumns>) {
         let mut at = 0;

@@ -64,7 +64,7 @@ impl Gathered {
     }
 
     /// The place in the set of a node of a surface, and where that would go.
-    fn slot_of<T: Scalar>(
+    pub(super) fn slot_of<T: Scalar>(
         &mut self,
         node: u32,
         (surface, in_step): (&Surface, &InStep<'_>),

@@ -100,7 +100,7 @@ impl Iterations {
             stiffness: formula.stiffness(),
         });
         let (made_of, mut held) = preconditioner.holds();
-        let forces = passes.iter().filter(|pass| is_of_forces(pass.phase)).map(|pass| pass.name.as_str());
+        let forces = passes.iter().filter(|pass| is_of_forces(pass)).map(|pass| pass.name.as_str());
         let forces: Vec<&str> = forces.collect();
         let mut of = vec![
             first,

@@ -8,6 +8,7 @@ mod differences;
 mod equation;
 mod formula;
 mod free_motions;
+mod grasped;
 mod iterations;
 mod kept;
 mod newton;
@@ -24,7 +25,7 @@ pub(super) use iterations::OfForces;
 pub use report::ImplicitSteps;
 pub(super) use statics::{Attempt, Rest, Statics};
 pub(super) use step::Implicit;
-pub(super) use trial::is_of_forces;
+pub(super) use trial::is_phase_of_forces;
 pub(super) use unsupported::{check, check_moves};
 
 use super::Simulation;

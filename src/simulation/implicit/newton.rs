@@ -92,7 +92,7 @@ pub(super) struct Workspace {
     p: Vec<f64>,
     from: Vec<f64>,
     elsewhere: Vec<f64>,
-    steps: Vec<f64>,
+    pub steps: Vec<f64>,
     /// What a step comes to: h v (m), and the acceleration (m/s²).
     pub step: Vec<f64>,
     pub acceleration: Vec<f64>,

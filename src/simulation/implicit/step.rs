@@ -4,7 +4,9 @@ use super::super::ScheduledPass;
 use super::super::explain::SolverInUse;
 use super::axes::{Axes, Motion};
 use super::device::{bring_state, send_state};
+use super::differences::steps_to;
 use super::formula::Formula;
+use super::grasped::Grasped;
 use super::iterations::{Iterations, OfForces};
 use super::kept::Kept;
 use super::newton::{Found, Lost, Settings, Workspace};
@@ -107,6 +109,7 @@ impl Implicit {
         }
         trial.net(&mut space.net);
         held_axes(trial.world, axes, motion, &mut space.to_go);
+        let grasped = Grasped::hold(trial.world, axes, motion, &mut space.to_go);
         for axis in 0..space.w.len() {
             (space.inertia[axis], space.constant[axis]) = motion.equation(&formula, h, axis, space.net[axis]);
             space.w[axis] = motion.predicted(axis, h);
@@ -119,7 +122,8 @@ impl Implicit {
         let mut trial = newton.trial;
         if left.is_ok() {
             let Iterations { motion, space, kept, .. } = &mut *iterations;
-            keep_forces(&mut trial, kept, space)?;
+            keep_forces(&mut trial, (&formula, h, motion), kept, space)?;
+            grasped.note(trial.world, (&formula, h, motion), space);
             let Workspace { w, step, acceleration, .. } = space;
             for axis in 0..w.len() {
                 let (velocity, of_axis) = motion.arrival(&formula, axis, h, w[axis]);
@@ -164,16 +168,34 @@ pub(super) fn held_axes(world: &World, axes: &Axes, motion: &Motion, to_go: &mut
     }
 }
 
+/// Whether what touches carries on is noted.
+fn note_springs(world: &mut World, noted: bool) {
+    if let Some(springs) = &mut world.resource_mut::<Clock>().springs {
+        springs.noted = noted;
+    }
+}
+
 /// Takes the forces at the end once more where something is kept of them: memories, elements that were turned inside
-/// out and may be.
-fn keep_forces(trial: &mut Trial<'_>, kept: &Kept, space: &mut Workspace) -> Result<(), Error> {
+/// out and may be, what touches.
+fn keep_forces(
+    trial: &mut Trial<'_>,
+    (formula, h, motion): (&Formula, f64, &Motion),
+    kept: &Kept,
+    space: &mut Workspace,
+) -> Result<(), Error> {
     let world = &mut *trial.world;
     let notes = world.query::<&OnInversion>().iter(world).any(|policy| policy.0 != Inversion::Stop);
-    if kept.has_memories() || notes || trial.elsewhere {
+    let touches = world.resource::<Clock>().springs.is_some();
+    if kept.has_memories() || notes || touches || trial.elsewhere {
         set_trying(trial.world, false);
+        note_springs(trial.world, true);
         // forces that were no numbers are in them
         kept.put_back(trial.world, |name| name == ViscousMemory::NAME);
-        trial.forces(&space.w, None, &mut space.net)?;
+        let Workspace { w, steps, net, .. } = space;
+        let at = steps_to(formula, h, motion, w, steps, trial);
+        let taken = trial.forces(w, at, net);
+        note_springs(trial.world, false);
+        taken?;
     }
     Ok(())
 }

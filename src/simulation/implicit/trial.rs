@@ -10,6 +10,9 @@ use bevy_ecs::prelude::*;
 /// How far products displace elements, as a share of their height at each node, in f32 and in f64: so that neither the
 /// curvature of laws nor rounding counts.
 pub(super) const STRAIN: [f64; 2] = [1e-3, 1e-7];
+/// The same in f32 where bodies touch: springs are pressed in by a small part of an element, and a difference that lets
+/// go of them knows nothing of them.
+const STRAIN_TOUCHING: f64 = 1e-4;
 
 /// The forces of a step, tried.
 pub(super) struct Trial<'a> {
@@ -36,9 +39,9 @@ pub(super) struct Tried {
 }
 
 impl Trial<'_> {
-    /// Runs the systems of some phases.
-    fn run(&mut self, phases: impl Fn(Phase) -> bool) -> Result<(), Error> {
-        for pass in self.passes.iter_mut().filter(|pass| phases(pass.phase)) {
+    /// Runs some passes.
+    fn run(&mut self, which: impl Fn(&ScheduledPass) -> bool) -> Result<(), Error> {
+        for pass in self.passes.iter_mut().filter(|pass| which(pass)) {
             pass.run_on_host(self.step, self.world)?;
         }
         Ok(())
@@ -48,7 +51,7 @@ impl Trial<'_> {
     pub fn boundary(&mut self) -> Result<(), Error> {
         match self.is_on_device() {
             true => self.boundary_on_device(),
-            false => self.run(|phase| phase == Phase::Boundary),
+            false => self.run(|pass| pass.phase == Phase::Boundary && !is_of_forces(pass)),
         }
     }
 
@@ -58,7 +61,7 @@ impl Trial<'_> {
             return false;
         }
         let name = DisplacementIncrement::NAME;
-        let forces = self.passes.iter().filter(|pass| is_of_forces(pass.phase));
+        let forces = self.passes.iter().filter(|pass| is_of_forces(pass));
         forces.into_iter().any(|pass| pass.reads(name))
     }
 
@@ -123,6 +126,7 @@ impl Trial<'_> {
         let precision = self.axes.bodies.first().and_then(|&body| self.world.get::<Displacement>(body));
         let of_precision = match precision.map(|u| u.precision()) {
             Some(Precision::F64) => STRAIN[1],
+            _ if self.world.resource::<Clock>().springs.is_some() => STRAIN_TOUCHING,
             _ => STRAIN[0],
         };
         if strain > 0.0 { of_precision / strain } else { 0.0 }
@@ -130,6 +134,11 @@ impl Trial<'_> {
 }
 
 /// Whether a phase finds forces.
-pub(in crate::simulation) fn is_of_forces(phase: Phase) -> bool {
+pub(in crate::simulation) fn is_phase_of_forces(phase: Phase) -> bool {
     phase > Phase::Boundary && phase < Phase::Integrate
+}
+
+/// Whether a pass finds forces: those of threads come before all others.
+pub(super) fn is_of_forces(pass: &ScheduledPass) -> bool {
+    is_phase_of_forces(pass.phase) || pass.writes(SutureForce::NAME)
 }

@@ -1,5 +1,6 @@
 //! Forces at trial displacements on a device, and what travels for them.
 
+use super::super::super::ScheduledPass;
 use super::super::trial::{Trial, is_of_forces};
 use crate::backend::device::{Device, bring_to_host, overwrite_on_device};
 use crate::backend::kernel::KernelId;
@@ -49,8 +50,8 @@ impl Trial<'_> {
     }
 
     /// The kernels of some phases.
-    pub(super) fn kernels(&self, phases: impl Fn(Phase) -> bool) -> Vec<KernelId> {
-        self.passes.iter().filter(|pass| phases(pass.phase)).flat_map(|pass| pass.kernels()).copied().collect()
+    pub(super) fn kernels(&self, which: impl Fn(&ScheduledPass) -> bool) -> Vec<KernelId> {
+        self.passes.iter().filter(|pass| which(pass)).flat_map(|pass| pass.kernels()).copied().collect()
     }
 
     /// The record of forces at the end of the step.
@@ -60,8 +61,8 @@ impl Trial<'_> {
     }
 
     /// Runs the kernels of some phases.
-    fn run_kernels(&mut self, phases: impl Fn(Phase) -> bool) -> Result<(), Error> {
-        let (kernels, record) = (self.kernels(phases), self.record());
+    fn run_kernels(&mut self, which: impl Fn(&ScheduledPass) -> bool) -> Result<(), Error> {
+        let (kernels, record) = (self.kernels(which), self.record());
         if kernels.is_empty() {
             return Ok(());
         }
@@ -70,7 +71,7 @@ impl Trial<'_> {
 
     /// Says where held axes go.
     pub fn boundary_on_device(&mut self) -> Result<(), Error> {
-        self.run_kernels(|phase| phase == Phase::Boundary)?;
+        self.run_kernels(|pass| pass.phase == Phase::Boundary)?;
         bring_to_host(self.world, |_, name| name == DisplacementIncrement::NAME)
     }
 
