@@ -120,7 +120,7 @@ fn step<T: Scalar>(
         None => work.set.solve(glue.sweeps),
     }
     // forces that are only tried leave everything as it is
-    let noted = clock.springs.is_none_or(|springs| springs.noted);
+    let noted = clock.springs.is_none_or(|springs| springs.forces == SpringForces::Noted);
     let counts_work = clock.relaxation.is_none().then_some(coefficients.work_factor);
     work.forces.fill(DVec3::ZERO);
     for (number, tie) in glue.ties.iter().enumerate().filter(|(number, _)| work.set.ties[*number].holds) {

@@ -96,13 +96,14 @@ pub use pressure::Pressure;
 pub use registry::Registry;
 pub use repeat::Repeat;
 pub use rows::{RowSet, Rows};
-pub(crate) use surface_contact::find_surfaces;
 #[doc(hidden)]
 pub use surface_contact::{Meeting, SurfaceContacts, SurfaceMemory};
+pub(crate) use surface_contact::{find_surface_springs, find_surfaces};
 pub(crate) use system::BeforeSteps;
 #[doc(hidden)]
 pub use system::{Because, DescribeKernels, HostSystem, OnDevice, OnHost};
 pub use system::{Outcome, Phase, System};
+pub(crate) use tool_contact::find_tool_springs;
 #[doc(hidden)]
 pub use traction::Traction;
 

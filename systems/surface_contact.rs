@@ -27,6 +27,7 @@ pub(crate) use device::find as find_surfaces;
 use glam::DVec3;
 pub(super) use kernels::ForeseenNodes;
 pub use memory::SurfaceMemory;
+pub(crate) use solved::find as find_surface_springs;
 use std::time::Duration;
 
 /// The explicit Lagrange correction of the predicted step, of points of surfaces against faces of others (see
@@ -162,6 +163,8 @@ struct Surface {
     // what a step finds, kept so that the next one need not ask for memory
     found: Vec<faced::Found>,
     gathered: gather::Gathered,
+    /// Of each contact of an implicit step what it did at the end of the last one, and its slopes.
+    solved: Vec<solved::Solved>,
     forces: Vec<DVec3>,
     figures: Figures,
 }
@@ -272,6 +275,13 @@ fn surface_contact(
     blocks: Query<Ref<Alive>>,
 ) -> Result<(), Error> {
     let contacts = &mut *contacts;
+    if let Some(springs) = &clock.springs {
+        contacts.surface.gathered.clear();
+        contacts.surface.solved.clear();
+        if springs.forces == SpringForces::Omitted {
+            return Ok(());
+        }
+    }
     survey::follow(contacts, &mut bodies, &authorings, &blocks);
     let figures = contacts.surface.figures;
     let precision = bodies.iter().next().map(|(_, columns)| columns.nodes.u.precision());
@@ -290,7 +300,7 @@ fn surface_contact(
 
 /// Whether forces are only tried, of an implicit step.
 fn tries(clock: &Clock) -> bool {
-    clock.springs.is_some_and(|springs| !springs.noted)
+    clock.springs.is_some_and(|springs| springs.forces != SpringForces::Noted)
 }
 
 fn step<T: Scalar>(
@@ -348,7 +358,9 @@ fn follow<T: Scalar>(
         Some([nodes.u.slice::<T>(), nodes.step.slice::<T>()])
     };
     motion.follow(&moving, clock, cpu);
-    let reach = motion::reach(contacts, motion.largest);
+    // an implicit step sees where nodes end, and not beyond
+    let largest = if clock.springs.is_some() { 0.0 } else { motion.largest };
+    let reach = motion::reach(contacts, largest);
     contacts.surface.motion = motion;
     let all_hold = || !contacts.is_idle() && contacts.lists_hold(reach) && contacts.shortlists_hold(reach);
     if !contacts.sleeps(reach) && !all_hold() {

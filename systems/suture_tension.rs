@@ -60,7 +60,7 @@ fn suture_tension(
     blocks: Query<&Alive>,
 ) {
     // forces that are only tried leave everything as it is
-    let noted = clock.springs.is_none_or(|springs| springs.noted);
+    let noted = clock.springs.is_none_or(|springs| springs.forces == SpringForces::Noted);
     for mut columns in &mut bodies {
         columns.sutured.forces.fill(DVec3::ZERO);
     }

@@ -1,5 +1,6 @@
 //! Time.
 
+use super::SolvedSprings;
 use super::curve::smooth;
 use bevy_ecs::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -24,17 +25,6 @@ pub struct Clock {
     /// The springs of contact of implicit steps, where bodies may touch something.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub springs: Option<SolvedSprings>,
-}
-
-/// Springs of contact whose forces are those at the end of the step that is solved for.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
-pub struct SolvedSprings {
-    /// The step (s) over the square of which a share of the mass is a stiffness: the stable one of the stiffest
-    /// element, at the start.
-    pub step: f64,
-    /// Whether what touches carries on to the next step is noted: not of forces that are only tried.
-    #[serde(skip)]
-    pub noted: bool,
 }
 
 impl Clock {

@@ -1,9 +1,8 @@
 //! What bodies do to each other where their surfaces meet.
 
+use super::Reals;
 use super::column::columns;
-use super::{Reals, SolvedSprings};
 use bevy_ecs::prelude::*;
-use glam::DVec3;
 
 columns! {
     /// Force of other bodies, and of the body itself, on the node in the last step (N), a vector a node. Exists where
@@ -40,36 +39,6 @@ impl ContactSpring {
         }
         let gap = self.share * outside + 2.0 * self.damping * self.share.sqrt() * outwards;
         if gap >= 0.0 { 0.0 } else { gap }
-    }
-}
-
-/// How a spring of an implicit step presses on a mass, in place of [`ContactSpring::gap`].
-#[derive(Clone, Copy, Debug)]
-pub struct SolvedPress {
-    /// N/m, along the surface as well.
-    pub stiffness: f64,
-    /// The normal force (N).
-    pub pressing: f64,
-}
-
-impl ContactSpring {
-    /// On a mass (kg) that is so far outside (m) and goes outwards by so much in the implicit step (m), which takes a
-    /// time (s): k δ − 2 ζ √(k m) v with k = share · m/Δt², Δt that of [`SolvedSprings`].
-    pub fn press(&self, springs: &SolvedSprings, mass: f64, outside: f64, [outwards, time]: [f64; 2]) -> SolvedPress {
-        let per_share = mass / (springs.step * springs.step);
-        let pressing = -per_share * self.gap(outside, outwards * springs.step / time);
-        SolvedPress { stiffness: self.share * per_share, pressing }
-    }
-}
-
-impl SolvedPress {
-    /// The tangential force (N) of an elastic slip along the surface (m), and whether it slides: the return mapping of
-    /// a force that is at most so large a part of the normal one.
-    pub fn rub(&self, slip: DVec3, friction: f64) -> (DVec3, bool) {
-        let (wanted, bound) = (-self.stiffness * slip, friction * self.pressing);
-        let size = wanted.length();
-        // what is no number is told by guards, not lost
-        if size <= bound { (wanted, false) } else { (wanted * (bound / size), true) }
     }
 }
 

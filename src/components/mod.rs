@@ -29,6 +29,7 @@ mod observation;
 mod own_load;
 mod patches;
 mod signal;
+mod springs;
 mod suction;
 mod suture;
 mod tool;
@@ -54,7 +55,7 @@ pub use block::{
     OnInversion, RemovalTime, RemovedEnergy, RemovedMomentum, RemovedWork, patch_groups, patch_length,
 };
 #[doc(hidden)]
-pub use clock::{Relaxation, SolvedSprings, TrialForces};
+pub use clock::{Relaxation, TrialForces};
 #[doc(hidden)]
 pub use column::{ColumnAccess, Role, all_columns, columns_in, place_in_buffer};
 #[doc(hidden)]
@@ -62,7 +63,7 @@ pub use column_layout::{Increments, Rows};
 #[doc(hidden)]
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
 #[doc(hidden)]
-pub use contact::{ContactForce, ContactSpring, FaceTouch, MEETING_NUMBERS, SolvedPress, SurfaceRows, SurfaceTouch};
+pub use contact::{ContactForce, ContactSpring, FaceTouch, MEETING_NUMBERS, SurfaceRows, SurfaceTouch};
 #[doc(hidden)]
 pub use free_tool::{FreeMotion, FreeMotions, FreeTool, FreeTools, FreeTouch, MetBody};
 #[doc(hidden)]
@@ -92,6 +93,8 @@ pub use own_load::{LoadText, NodeAtRest, OfSystem, OwnLoad};
 pub use patches::Patches;
 #[doc(hidden)]
 pub use signal::Signal;
+#[doc(hidden)]
+pub use springs::{Rubbing, SolvedPress, SolvedSprings, SpringForces, TouchingSpring};
 #[doc(hidden)]
 pub use suction::{BodyFaces, FacePresence, NO_FACE, SUCTION_NUMBERS, Suction, SuctionMarks, SuctionPressure, share};
 #[doc(hidden)]

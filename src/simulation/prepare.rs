@@ -109,7 +109,7 @@ fn clock(
         let bound = stable_step::found_bound(world, diagnostics)?;
         let steps = (scene.scene.duration / step).round().max(1.0) as u64;
         let touches = !scene.scene.contacts.is_empty() || !scene.scene.attachments.is_empty();
-        let springs = touches.then_some(SolvedSprings { step: bound.time_step, noted: false });
+        let springs = touches.then_some(SolvedSprings { step: bound.time_step, forces: SpringForces::Tried });
         let clock = Clock { velocities_at_ends: true, springs, ..Clock::with_step(step) };
         return Some((clock, Stability::of_implicit(bound, step), steps));
     }

@@ -334,11 +334,6 @@ impl ScheduledPass {
         self.reads.contains(&name)
     }
 
-    /// Whether it runs on the host and writes a column.
-    pub(super) fn writes(&self, name: &str) -> bool {
-        matches!(&self.job, Job::Host { writes, .. } if writes.contains(&name))
-    }
-
     /// Runs a host system if this is one of its steps.
     pub(super) fn run_on_host(&mut self, step: u64, world: &mut World) -> Result<(), Error> {
         let Job::Host { system, interval, .. } = &mut self.job else { return Ok(()) };

@@ -113,7 +113,7 @@ pub(super) fn meet<T: Scalar>(
     gathered.set.solve(contacts.sweeps, cpu);
     let work_factor = clock.relaxation.is_none().then_some(coefficients.work_factor);
     note_touches(contacts, &gathered, work_factor, bodies);
-    push(contacts, &gathered.acted_on, bodies, true);
+    push(contacts, &gathered.acted_on, bodies);
     gathered.acted_on.iter().for_each(|&node| gathered.slots[node as usize] = u32::MAX);
     (contacts.surface.gathered, contacts.surface.found) = (gathered, found);
 }
@@ -155,12 +155,7 @@ fn note_touches<T: Scalar>(
 }
 
 /// Adds the forces to the loads, and notes them.
-pub(super) fn push<T: Scalar>(
-    contacts: &mut SurfaceContacts,
-    acted_on: &[u32],
-    bodies: &mut [BodySlices<'_, T>],
-    noted: bool,
-) {
+pub(super) fn push<T: Scalar>(contacts: &mut SurfaceContacts, acted_on: &[u32], bodies: &mut [BodySlices<'_, T>]) {
     let Surface { nodes, forces, pressed, .. } = &mut contacts.surface;
     let pushed = acted_on.iter().zip(&*forces).filter(|(_, force)| **force != DVec3::ZERO);
     for (&node, &force) in pushed {
@@ -168,9 +163,7 @@ pub(super) fn push<T: Scalar>(
         let (columns, row) = (&mut bodies[body as usize], row as usize);
         let load = vector(columns.external, row) + force;
         set_vector(columns.external, 3 * row, load);
-        if noted {
-            set_vector(columns.force, 3 * row, force);
-            pressed.push(node);
-        }
+        set_vector(columns.force, 3 * row, force);
+        pressed.push(node);
     }
 }

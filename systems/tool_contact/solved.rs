@@ -4,7 +4,9 @@ use super::{ContactStep, SLIDES, STICKS, ToolInStep, along_surface};
 use crate::backend::cpu::NodeColumns;
 use crate::components::*;
 use crate::math::SimdScalar;
-use glam::DVec3;
+use bevy_ecs::prelude::*;
+use glam::{DMat3, DVec3};
+use smallvec::smallvec;
 
 /// A node where it is tried.
 struct At {
@@ -24,14 +26,57 @@ struct Last {
 /// What it does.
 struct Press {
     force: DVec3,
+    /// [`TouchingSpring::slopes`].
+    slopes: [DMat3; 2],
     state: f64,
     /// How far the node goes along the tool's surface (m).
     along: f64,
 }
 
+/// Finds the springs of tools at nodes where they are, in a step whose signals are there. `first_axis` is that of a
+/// body.
+pub(crate) fn find(world: &mut World, first_axis: impl Fn(Entity) -> Option<usize>, found: &mut Vec<TouchingSpring>) {
+    type Bodies<'a> = (
+        Entity,
+        (&'a ToolContacts, &'a ToolTouch, &'a Mass, &'a ConstrainedAxes),
+        (&'a RestPosition, &'a Displacement, &'a DisplacementIncrement),
+    );
+    let mut bodies = world.query::<Bodies<'_>>();
+    let (clock, signals) = (world.resource::<Clock>(), world.resource::<Signals>());
+    let Some(springs) = &clock.springs else { return };
+    for (body, (contacts, touch, mass, axes), (rest, u, step)) in bodies.iter(world) {
+        let Some(first) = first_axis(body) else { continue };
+        let in_step = contacts.in_step(clock, signals);
+        for (number, (&row, &mask)) in contacts.rows.iter().zip(&contacts.masks).enumerate() {
+            let row = row as usize;
+            let place = rest.0[row] - contacts.reference + u.vector(row);
+            let near = in_step.near(mask & contacts.all(), place);
+            let mass = mass.get(row);
+            if near == 0 || mass <= 0.0 {
+                continue;
+            }
+            let at = At { place, step: step.vector(row), free: free_axes(axes[row]), mass };
+            for tool in (0..contacts.tools.len()).filter(|tool| near >> tool & 1 == 1) {
+                let kept = contacts.numbers() * number + contacts.numbers_a_tool() * tool;
+                let last = Last { force: touch.vector_at(kept), state: touch.get(kept + 3) };
+                let press = contacts.press_of((&in_step, springs), tool, &at, &last);
+                found.extend(press.map(|Press { force, slopes, .. }| TouchingSpring {
+                    parts: smallvec![(first + 3 * row, 1.0)],
+                    force,
+                    slopes,
+                }));
+            }
+        }
+    }
+}
+
+/// 1 along axes that are free, else 0.
+fn free_axes(constrained: u32) -> DVec3 {
+    DVec3::from_array([0, 1, 2].map(|i| f64::from(1 - (constrained >> i & 1))))
+}
+
 impl ToolContacts {
-    /// What tools do to one node. Elastic slip is in the tangential force of the last step; what is carried on is
-    /// noted only where the step is taken.
+    /// What tools do to one node at the end of a step. Elastic slip is in the tangential force of the last one.
     pub(super) fn press<T: SimdScalar>(
         &self,
         (step, springs): (&ContactStep, &SolvedSprings),
@@ -48,7 +93,7 @@ impl ToolContacts {
         let at = At {
             place,
             step: DVec3::from_array([0, 1, 2].map(|i| nodes.step[3 * row + i].to_f64())),
-            free: DVec3::from_array([0, 1, 2].map(|i| f64::from(1 - (nodes.axes[row] >> i & 1)))),
+            free: free_axes(nodes.axes[row]),
             mass: nodes.inertia[row].to_f64(),
         };
         for (tool, of_tool) in values.chunks_exact_mut(numbers).enumerate() {
@@ -62,7 +107,7 @@ impl ToolContacts {
             if let Some(press) = &press {
                 nodes.add_load(row, press.force);
             }
-            if springs.noted && (press.is_some() || last.state != 0.0) {
+            if press.is_some() || last.state != 0.0 {
                 note(of_tool, (&at, change.place(pose.inverse(place))), &last, press);
             }
         }
@@ -81,7 +126,7 @@ impl ToolContacts {
         let ToolInStep { pose, change, .. } = &step.tools[tool];
         let of_tool = pose.inverse(at.place);
         let (distance, normal) = contact.geometry.distance(of_tool);
-        if distance >= 0.0 {
+        if distance > 0.0 {
             return None;
         }
         let normal = pose.rotation * normal;
@@ -93,19 +138,19 @@ impl ToolContacts {
         let press = spring.press(springs, at.mass, distance, [normal.dot(relative), step.time]);
         let along = along_surface(relative, normal);
         let friction = contact.friction[usize::from(last.state != STICKS)];
-        let (rubbing, slides) = match friction > 0.0 {
-            true => press.rub(along - along_surface(last.force, normal) / press.stiffness, friction),
-            false => (DVec3::ZERO, true),
-        };
-        let state = if slides { SLIDES } else { STICKS };
-        Some(Press { force: normal * press.pressing + rubbing, state, along: along.length() })
+        let slip = along - along_surface(last.force, normal) / press.stiffness;
+        let rubbing = press.rub(normal, slip, friction);
+        let (force, slopes) = press.with(normal, &rubbing);
+        let state = if rubbing.slides { SLIDES } else { STICKS };
+        Some(Press { force, slopes, state, along: along.length() })
     }
 }
 
 /// Notes what a tool does at the end of a step in which it goes so far (m). Forces work with the mean of those at both
 /// ends, as all in implicit steps.
 fn note<T: SimdScalar>(of_tool: &mut [T], (at, tool_step): (&At, DVec3), last: &Last, press: Option<Press>) {
-    let Press { force, state, along } = press.unwrap_or(Press { force: DVec3::ZERO, state: 0.0, along: 0.0 });
+    let nothing = Press { force: DVec3::ZERO, slopes: [DMat3::ZERO; 2], state: 0.0, along: 0.0 };
+    let Press { force, state, along, .. } = press.unwrap_or(nothing);
     let mean = 0.5 * (last.force + force);
     let work = mean.dot(tool_step);
     for i in 0..3 {

@@ -60,6 +60,11 @@ impl Formula {
         before + h * (self.before * accelerations[0] + self.after * accelerations[1])
     }
 
+    /// What a displacement of 1 m makes of the step (m), which is that of the velocity at the end.
+    pub fn step(&self) -> f64 {
+        self.after * self.of_displacement
+    }
+
     /// What a displacement of 1 m changes of the equation of an axis (N/m), beside forces: with its mass (kg) and
     /// damping coefficient (kg/s).
     pub fn inertia(&self, h: f64, mass: f64, damping: f64) -> f64 {

@@ -14,6 +14,7 @@ mod kept;
 mod newton;
 mod preconditioner;
 mod report;
+mod springs;
 mod statics;
 mod step;
 mod sums;
@@ -25,7 +26,6 @@ pub(super) use iterations::OfForces;
 pub use report::ImplicitSteps;
 pub(super) use statics::{Attempt, Rest, Statics};
 pub(super) use step::Implicit;
-pub(super) use trial::is_phase_of_forces;
 pub(super) use unsupported::{check, check_moves};
 
 use super::Simulation;

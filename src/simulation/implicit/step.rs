@@ -11,6 +11,7 @@ use super::iterations::{Iterations, OfForces};
 use super::kept::Kept;
 use super::newton::{Found, Lost, Settings, Workspace};
 use super::report::ImplicitSteps;
+use super::springs::Springs;
 use super::trial::Trial;
 use super::work::Works;
 use crate::components::*;
@@ -27,6 +28,7 @@ const WARNED: f64 = 0.5;
 pub(in crate::simulation) struct Implicit {
     axes: Axes,
     iterations: Iterations,
+    springs: Springs,
     works: Option<Works>,
 }
 
@@ -42,7 +44,8 @@ impl Implicit {
         let axes = Axes::of(world);
         let settings = Settings { formula: Formula::of(scheme), newton, tolerance, budget };
         let iterations = Iterations::new(settings, preconditioner, &axes, world);
-        Some(Self { axes, iterations, works: scene.output.energies_every.map(|_| Works::default()) })
+        let works = scene.output.energies_every.map(|_| Works::default());
+        Some(Self { axes, iterations, springs: Springs::default(), works })
     }
 
     /// What they took.
@@ -93,9 +96,9 @@ impl Implicit {
 
     /// Finds the end of the step, and takes it. Gives the share of the residual that is left.
     fn find(&mut self, world: &mut World, passes: &mut [ScheduledPass], clock: &Clock) -> Result<f64, Lost> {
-        let Self { axes, iterations, works } = self;
+        let Self { axes, iterations, springs, works } = self;
         let (h, formula) = (clock.time_step, iterations.settings.formula);
-        let mut trial = Trial { world, passes, axes, step: clock.step, count: 0, elsewhere: false };
+        let mut trial = Trial { world, passes, axes, springs, step: clock.step, count: 0, elsewhere: false };
         let Iterations { motion, space, .. } = &mut *iterations;
         axes.read(trial.world, motion);
         if clock.step == 0 {
@@ -168,13 +171,6 @@ pub(super) fn held_axes(world: &World, axes: &Axes, motion: &Motion, to_go: &mut
     }
 }
 
-/// Whether what touches carries on is noted.
-fn note_springs(world: &mut World, noted: bool) {
-    if let Some(springs) = &mut world.resource_mut::<Clock>().springs {
-        springs.noted = noted;
-    }
-}
-
 /// Takes the forces at the end once more where something is kept of them: memories, elements that were turned inside
 /// out and may be, what touches.
 fn keep_forces(
@@ -188,14 +184,11 @@ fn keep_forces(
     let touches = world.resource::<Clock>().springs.is_some();
     if kept.has_memories() || notes || touches || trial.elsewhere {
         set_trying(trial.world, false);
-        note_springs(trial.world, true);
         // forces that were no numbers are in them
         kept.put_back(trial.world, |name| name == ViscousMemory::NAME);
         let Workspace { w, steps, net, .. } = space;
         let at = steps_to(formula, h, motion, w, steps, trial);
-        let taken = trial.forces(w, at, net);
-        note_springs(trial.world, false);
-        taken?;
+        trial.noted_forces(w, at, net)?;
     }
     Ok(())
 }

@@ -1,0 +1,138 @@
+//! The line search: how far Newton's iterations go along a direction.
+
+use super::super::trial::Tried;
+use super::{DESCENT, Lost, Newton, Way, Workspace};
+
+/// How often a way is shortened.
+const MOST_TRIES: u32 = 12;
+/// What the work of the residual must fall to where it has been seen to change its sign along a way.
+const FOUND: f64 = 0.5;
+
+/// Where along a way the work of the residual is nothing: it has one sign at its nearer end and the other at its
+/// farther one, or is no number there. Where springs begin to touch, or let go, it bends, and halving from the far end
+/// comes down to where they do not touch yet; the next iteration would go the same way. Turns of regula falsi
+/// (Illinois: of an end that stays the work is halved; Dowell & Jarratt 1971) and of bisection, so that it ends whatever
+/// the bend.
+#[derive(Clone, Copy, Debug)]
+struct Bracket {
+    /// How far, and the work there (J).
+    near: [f64; 2],
+    far: Option<[f64; 2]>,
+    bisects: bool,
+}
+
+impl Bracket {
+    /// Of a way with such a work at its beginning (J).
+    fn from(work: f64) -> Self {
+        Self { near: [0.0, work], far: None, bisects: true }
+    }
+
+    /// Whether the work is known to change its sign, and not only to end somewhere.
+    fn crosses(&self) -> bool {
+        self.far.is_some_and(|[_, work]| work.is_finite())
+    }
+
+    /// Where to look next, after a look there.
+    fn next(&mut self, share: f64, work: f64) -> f64 {
+        if work * self.near[1] > 0.0 {
+            // it stays: what is at the other end counts for less
+            self.far = self.far.map(|[share, work]| [share, 0.5 * work]);
+            // more of the same sign is no nearer to the end
+            match self.far {
+                Some(_) => self.near = [share, work],
+                None => return 0.5 * share,
+            }
+        } else {
+            if self.far.is_some() {
+                self.near[1] *= 0.5;
+            }
+            self.far = Some([share, work]);
+        }
+        let ([near, less], [far, more]) = (self.near, self.far.unwrap_or([share, work]));
+        self.bisects = !self.bisects;
+        let crossing = near + (far - near) * less / (less - more);
+        if self.bisects || !(crossing > near && crossing < far) { 0.5 * (near + far) } else { crossing }
+    }
+}
+
+impl Newton<'_, '_> {
+    /// Goes along p as far as the residual does less work along it, and where bodies give way along it as far as it
+    /// leads downhill. `size` becomes the norm of the new residual.
+    pub(super) fn search(&mut self, way: Way, size: &mut f64, enough: f64) -> Result<Tried, Lost> {
+        self.space.from.copy_from_slice(&self.space.w);
+        let begins = self.sums.dot(&self.space.p, &self.space.g);
+        let mut touches = !self.trial.springs.is_empty();
+        let (mut share, mut bracket) = (1.0, Bracket::from(begins));
+        for _ in 0..=MOST_TRIES {
+            let Workspace { w, from, p, to_go, .. } = &mut *self.space;
+            for axis in 0..w.len() {
+                w[axis] = from[axis] + share * (p[axis] + to_go[axis]);
+            }
+            let tried = self.forces_at_w()?;
+            touches |= !self.trial.springs.is_empty();
+            let mut work = f64::NAN;
+            if tried.sound {
+                let now = self.residual();
+                work = self.sums.dot(&self.space.p, &self.space.g);
+                let descends = self.descends(&way, (share, work), touches.then_some(&bracket));
+                if now.is_finite() && (descends || self.settings.newton == 1 || now <= enough) {
+                    self.space.to_go.iter_mut().for_each(|left| *left *= 1.0 - share);
+                    *size = now;
+                    return Ok(tried);
+                }
+            }
+            self.report.halvings += 1;
+            share = if touches { bracket.next(share, work) } else { 0.5 * share };
+        }
+        let Workspace { w, from, .. } = &mut *self.space;
+        w.copy_from_slice(from);
+        Err(Lost::Because(format!(
+            "no descent after {MOST_TRIES} halvings of a Newton step, at a residual of {size:.3e} N"
+        )))
+    }
+
+    /// Whether the work of the residual (J) has fallen enough where a share of the way is gone. Of a share, that share
+    /// of the fall is asked for, or directions along which work falls as the tangent says were refused. Where something
+    /// touches, a way counts, too, at whose end the residual still leads on: springs have let go, of which the tangent
+    /// did not know.
+    fn descends(&self, way: &Way, (share, work): (f64, f64), touching: Option<&Bracket>) -> bool {
+        let along = way.along.abs();
+        let size = if way.gives_way { work.max(0.0) } else { work.abs() };
+        let most = if touching.is_some_and(Bracket::crosses) { FOUND } else { 1.0 - (1.0 - DESCENT) * share };
+        let leads_on = |bracket: &Bracket| share == 1.0 && work * bracket.near[1] > 0.0 && size < along;
+        size <= most * along || touching.is_some_and(leads_on)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How often it looks until the work has fallen to the share that is asked for.
+    fn looks(work: impl Fn(f64) -> f64) -> u32 {
+        let (mut bracket, mut share) = (Bracket::from(work(0.0)), 1.0);
+        for look in 0..50 {
+            if work(share).abs() <= FOUND * work(0.0).abs() {
+                return look;
+            }
+            share = bracket.next(share, work(share));
+        }
+        panic!("not found: {bracket:?}");
+    }
+
+    #[test]
+    fn it_finds_where_a_spring_begins_to_touch() {
+        for stiffness in [1e1, 1e3, 1e6] {
+            for at in [0.01, 0.1, 0.4, 0.9] {
+                let found = looks(|share| share - 1.0 + stiffness * (share - at).max(0.0));
+                assert!(found <= MOST_TRIES, "{stiffness} at {at}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_ends_a_way() {
+        let found = looks(|share| if share > 0.3 { f64::NAN } else { 2.0 * share - 1.0 });
+        assert!(found <= 3, "{found}");
+    }
+}
