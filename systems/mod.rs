@@ -98,7 +98,8 @@ pub use repeat::Repeat;
 pub use rows::{RowSet, Rows};
 #[doc(hidden)]
 pub use surface_contact::{Meeting, SurfaceContacts, SurfaceMemory};
-pub(crate) use surface_contact::{find_surface_springs, find_surfaces};
+pub(crate) use surface_contact::{find_surface_springs, find_surfaces, seek_surfaces};
+pub(crate) use suture_tension::find_thread_springs;
 pub(crate) use system::BeforeSteps;
 #[doc(hidden)]
 pub use system::{Because, DescribeKernels, HostSystem, OnDevice, OnHost};

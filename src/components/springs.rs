@@ -19,6 +19,8 @@ pub struct SolvedSprings {
 /// What becomes of the forces of contact where systems find forces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SpringForces {
+    /// None are found, but which points of surfaces may touch what in the step that begins.
+    Sought,
     /// They are found for the solver, which adds them up itself, and nothing is noted.
     #[default]
     Tried,

@@ -8,7 +8,7 @@ use super::schedule::Scheduled;
 use super::scheme::Summed;
 use crate::backend::dispatch::Dispatched;
 use crate::backend::kernel::Kernel;
-use crate::components::{ColumnAccess, SutureForce, Touched};
+use crate::components::{Column, ColumnAccess, SutureForce, Touched};
 use crate::systems::{Phase, Repeat, RowSet};
 use bevy_ecs::prelude::World;
 use bevy_ecs::system::SystemAccess;

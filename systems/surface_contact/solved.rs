@@ -7,16 +7,35 @@ use super::meet::{FACES, SLIDES, STICKS, forget, push, release};
 use super::{Meeting, SurfaceContacts};
 use crate::backend::cpu::IntegrationCoefficients;
 use crate::components::*;
-use crate::contact::{Contact, Facing};
+use crate::contact::Contact;
+use crate::error::Error;
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
+use bevy_ecs::system::RunSystemOnce;
 use glam::{DMat3, DVec3};
+use smallvec::SmallVec;
 
-/// What a point is found to do, before its force is known.
-struct Meets {
+/// A point and what it faces in a step. Weights and normal are those at its beginning, as in explicit steps: what a
+/// point faces would change all at once where it comes round a corner, and of some steps there were no end.
+#[derive(Clone, Debug)]
+pub(super) struct Pair {
     meeting: Meeting,
-    met: Met,
+    point: u32,
+    /// Whether it is the first face of the point: only there slip is kept.
+    first: bool,
     normal: DVec3,
+    /// Nodes with signed weights.
+    nodes: SmallVec<[(u32, f64); 8]>,
+    /// What is missing to the gap (m) beside the places of the nodes along the normal.
+    offset: f64,
+}
+
+impl Pair {
+    /// How far the point is outside (m) where nodes are.
+    fn gap(&self, places: &[DVec3]) -> f64 {
+        let along = |&(node, weight): &(u32, f64)| weight * self.normal.dot(places[node as usize]);
+        self.offset + self.nodes.iter().map(along).sum::<f64>()
+    }
 }
 
 /// What is known of a contact besides.
@@ -27,6 +46,15 @@ pub(super) struct Solved {
     rubbed: DVec3,
     /// [`TouchingSpring::slopes`].
     slopes: [DMat3; 2],
+}
+
+/// Looks which points may touch what in the step that begins, where the clock says that this is wanted.
+pub(crate) fn seek(world: &mut World) -> Result<(), Error> {
+    if !world.contains_resource::<SurfaceContacts>() {
+        return Ok(());
+    }
+    let ran = world.run_system_once(super::surface_contact);
+    ran.unwrap_or_else(|error| Err(Error::Options(format!("surfaces cannot be looked at: {error}"))))
 }
 
 /// The springs that the system has found where nodes were tried. `first_axis` is that of a body.
@@ -43,6 +71,42 @@ pub(crate) fn find(world: &World, first_axis: impl Fn(Entity) -> Option<usize>, 
     }
 }
 
+/// Finds which points may touch what in the step that begins, of what points face.
+pub(super) fn pair(contacts: &mut SurfaceContacts) {
+    let mut pairs = std::mem::take(&mut contacts.surface.pairs);
+    let surface = &contacts.surface;
+    let mut add = |pair: Pair, gap: f64| {
+        let offset = gap - pair.gap(&surface.places);
+        pairs.push(Pair { offset, ..pair });
+    };
+    for Found { place, faced, .. } in &surface.found {
+        let number = surface.lists.points[*place as usize];
+        let point = &surface.points[number as usize];
+        for (facing, first) in [(&faced.first, true), (&faced.second, false)] {
+            let Some(facing) = facing else { continue };
+            let body = surface.triangles.bodies[facing.triangle as usize];
+            let Some(meeting) = contacts.meeting(point.body, body) else { continue };
+            let (corners, weights) = surface.corners_of(point, facing);
+            let of_face = corners.into_iter().zip(weights).map(|(node, weight)| (node, -weight));
+            let nodes = point.parts().chain(of_face).collect();
+            let pair = Pair { meeting, point: number, first, normal: facing.normal, nodes, offset: 0.0 };
+            add(pair, contacts.gap(point, facing));
+        }
+    }
+    // nothing is known of how edges slipped that cross
+    for (pair, crossing) in &surface.crossings.found {
+        let [one, other] = pair.map(|edge| surface.crossings.edges[edge as usize]);
+        let Some(meeting) = contacts.crossing(one.body, other.body) else { continue };
+        let [of_one, of_other] = crossing.weights;
+        let of_other = other.nodes.into_iter().zip(of_other).map(|(node, weight)| (node, -weight));
+        let nodes = one.nodes.into_iter().zip(of_one).chain(of_other).collect();
+        // nodes are the first of the points
+        let pair = Pair { meeting, point: one.nodes[0], first: false, normal: crossing.normal, nodes, offset: 0.0 };
+        add(pair, crossing.gap - meeting.thickness);
+    }
+    contacts.surface.pairs = pairs;
+}
+
 /// Finds the forces of springs where nodes are. They are added to the loads, and what points carry on is noted, only
 /// where the step is taken.
 pub(super) fn press<T: Scalar>(
@@ -50,23 +114,23 @@ pub(super) fn press<T: Scalar>(
     (clock, springs): (&Clock, &SolvedSprings),
     bodies: &mut [BodySlices<'_, T>],
 ) {
-    let found = std::mem::take(&mut contacts.surface.found);
     let mut gathered = std::mem::take(&mut contacts.surface.gathered);
     gathered.clear();
     let coefficients = IntegrationCoefficients::<f64>::of(clock);
     let in_step = InStep { largest: 0.0, settling: 0.0, coefficients: &coefficients };
     let mut solved = std::mem::take(&mut contacts.surface.solved);
-    for Found { place, faced, .. } in &found {
-        let number = contacts.surface.lists.points[*place as usize];
-        if let Some(first) = &faced.first {
-            gathered.facing.push(number);
-            face(contacts, &mut gathered, (number, first, true), (&in_step, springs), bodies, &mut solved);
+    solved.clear();
+    let pairs = std::mem::take(&mut contacts.surface.pairs);
+    for pair in &pairs {
+        let gap = pair.gap(&contacts.surface.places);
+        if pair.first {
+            gathered.facing.push(pair.point);
         }
-        if let Some(second) = &faced.second {
-            face(contacts, &mut gathered, (number, second, false), (&in_step, springs), bodies, &mut solved);
+        // what is no number is told by guards, not lost
+        if !(gap > 0.0) {
+            add(contacts, &mut gathered, (pair, gap), (&in_step, springs), bodies, &mut solved);
         }
     }
-    cross(contacts, &mut gathered, (&in_step, springs), bodies, &mut solved);
     if springs.forces == SpringForces::Noted {
         let mut forces = std::mem::take(&mut contacts.surface.forces);
         forces.clear();
@@ -78,72 +142,25 @@ pub(super) fn press<T: Scalar>(
         contacts.surface.forces = forces;
         release(&mut contacts.surface, bodies);
         forget(contacts, &gathered.facing, bodies);
-        note(contacts, &gathered, &found, &solved, bodies);
+        note(contacts, &gathered, &pairs, &solved, bodies);
         push(contacts, &gathered.acted_on, bodies);
     }
     gathered.acted_on.iter().for_each(|&node| gathered.slots[node as usize] = u32::MAX);
-    (contacts.surface.gathered, contacts.surface.found, contacts.surface.solved) = (gathered, found, solved);
+    (contacts.surface.gathered, contacts.surface.pairs, contacts.surface.solved) = (gathered, pairs, solved);
 }
 
-/// What a point does to a face.
-fn face<T: Scalar>(
-    contacts: &SurfaceContacts,
-    gathered: &mut Gathered,
-    (number, facing, first): (u32, &Facing, bool),
-    of: (&InStep<'_>, &SolvedSprings),
-    bodies: &mut [BodySlices<'_, T>],
-    all: &mut Vec<Solved>,
-) {
-    let surface = &contacts.surface;
-    let point = &surface.points[number as usize];
-    let body = surface.triangles.bodies[facing.triangle as usize];
-    let gap = contacts.gap(point, facing);
-    // what is no number is told by guards, not lost
-    if gap > 0.0 {
-        return;
-    }
-    let Some(meeting) = contacts.meeting(point.body, body) else { return };
-    let (corners, weights) = surface.corners_of(point, facing);
-    let of_face = corners.into_iter().zip(weights).map(|(node, weight)| (node, -weight));
-    let meets = Meets { meeting, met: Met { point: number, first, gap }, normal: facing.normal };
-    add(contacts, gathered, meets, point.parts().chain(of_face), of, bodies, all);
-}
-
-/// What edges do that cross. Nothing is known of how they slipped.
-fn cross<T: Scalar>(
-    contacts: &SurfaceContacts,
-    gathered: &mut Gathered,
-    of: (&InStep<'_>, &SolvedSprings),
-    bodies: &mut [BodySlices<'_, T>],
-    all: &mut Vec<Solved>,
-) {
-    let surface = &contacts.surface;
-    for (pair, crossing) in &surface.crossings.found {
-        let [one, other] = pair.map(|edge| surface.crossings.edges[edge as usize]);
-        let Some(meeting) = contacts.crossing(one.body, other.body) else { continue };
-        let gap = crossing.gap - meeting.thickness;
-        if gap > 0.0 {
-            continue;
-        }
-        let [of_one, of_other] = crossing.weights;
-        let of_other = other.nodes.into_iter().zip(of_other).map(|(node, weight)| (node, -weight));
-        let nodes = one.nodes.into_iter().zip(of_one).chain(of_other);
-        // nodes are the first of the points
-        let met = Met { point: one.nodes[0], first: false, gap };
-        add(contacts, gathered, Meets { meeting, met, normal: crossing.normal }, nodes, of, bodies, all);
-    }
-}
-
-/// Adds a contact of nodes with signed weights, with its force. The mass that a spring presses on is that of the point.
+/// Adds the contact of a pair with such a gap (m), with its force. The mass that a spring presses on is that of the
+/// point.
 fn add<T: Scalar>(
     contacts: &SurfaceContacts,
     gathered: &mut Gathered,
-    Meets { meeting, met, normal }: Meets,
-    nodes: impl Iterator<Item = (u32, f64)>,
+    (pair, gap): (&Pair, f64),
     (in_step, springs): (&InStep<'_>, &SolvedSprings),
     bodies: &mut [BodySlices<'_, T>],
     all: &mut Vec<Solved>,
 ) {
+    let &Pair { meeting, point, first, normal, .. } = pair;
+    let met = Met { point, first, gap };
     let Some(spring) = meeting.spring else { return };
     let kept = contacts.kept(met.point);
     let touch = bodies[kept.body].kept_mut(kept);
@@ -153,7 +170,7 @@ fn add<T: Scalar>(
     let friction = meeting.friction[usize::from(!sticks)];
     let mut contact = Contact::new((normal, met.gap), (friction, slip));
     let mut mass = 0.0;
-    for (node, weight) in nodes {
+    for &(node, weight) in &pair.nodes {
         let slot = gathered.slot_of(node, (&contacts.surface, in_step), bodies);
         contact.add(slot, weight);
         if weight > 0.0 {
@@ -180,19 +197,18 @@ fn add<T: Scalar>(
 fn note<T: Scalar>(
     contacts: &mut SurfaceContacts,
     gathered: &Gathered,
-    found: &[Found],
+    pairs: &[Pair],
     all: &[Solved],
     bodies: &mut [BodySlices<'_, T>],
 ) {
-    for Found { place, faced, .. } in found {
-        let Some(first) = &faced.first else { continue };
-        let number = contacts.surface.lists.points[*place as usize];
-        let gap = contacts.gap(&contacts.surface.points[number as usize], first);
-        let kept = contacts.kept(number);
+    for pair in pairs.iter().filter(|pair| pair.first) {
+        let gap = pair.gap(&contacts.surface.places);
+        let kept = contacts.kept(pair.point);
         let touch = bodies[kept.body].kept_mut(kept);
         set_vector(touch, 0, DVec3::ZERO);
         (touch[3], touch[4], touch[5]) = (T::default(), T::from_f64(FACES), T::from_f64(gap));
     }
+    contacts.surface.figures.contacts += gathered.set.contacts.len() as u64;
     for ((contact, met), Solved { was, rubbed, .. }) in gathered.set.contacts.iter().zip(&gathered.met).zip(all) {
         let kept = contacts.kept(met.point);
         let touch = bodies[kept.body].kept_mut(kept);

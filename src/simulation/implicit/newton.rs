@@ -152,7 +152,7 @@ impl Newton<'_, '_> {
                 floor = self.rounding()?;
             }
             let enough = enough.max(floor);
-            let moves = self.space.to_go.iter().any(|&left| left != 0.0);
+            let moves = self.moves();
             // the linearised step takes its one solve wherever it begins
             let taken = self.settings.newton > 1 || iterations > 0 || size == 0.0;
             let solved = taken && size <= enough && !moves;
@@ -174,6 +174,14 @@ impl Newton<'_, '_> {
             let needed = if self.settings.newton > 1 { 0.5 * enough / size } else { 0.0 };
             let way = self.solve_linear(forcing.max(needed).min(0.5))?;
             before = size;
+            if std::env::var("SINEW_TRACE").is_ok() {
+                eprintln!(
+                    "newton {iterations} size {size:.4e} enough {enough:.4e} touching {} along {:.3e} {}",
+                    self.trial.springs.count(),
+                    way.along,
+                    self.trial.springs.state()
+                );
+            }
             tried = match self.search(way, &mut size, enough) {
                 Err(Lost::Because(_)) if !moves && self.is_rounding(size)? => {
                     return Ok(self.left_of([first, size], true, remaining));
@@ -183,6 +191,11 @@ impl Newton<'_, '_> {
             remaining = self.sums.norm(&self.space.p) * size / before;
             iterations += 1;
         }
+    }
+
+    /// Whether held axes have not arrived yet.
+    fn moves(&self) -> bool {
+        self.space.to_go.iter().any(|&left| left != 0.0)
     }
 
     /// Passes that the step may still take.

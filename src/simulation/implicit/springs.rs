@@ -1,9 +1,10 @@
-//! Springs of contact where forces are tried. Which of them touch, and which stick or slide, is that of the place at which
+//! Springs of contact, and threads, where forces are tried. Which of them touch, and which stick or slide, is that of the place at which
 //! a Newton iteration takes its tangent: a difference of forces would see some of them let go, and others not.
 
 use super::axes::Axes;
-use crate::components::{Clock, TouchingSpring};
-use crate::systems::{find_surface_springs, find_tool_springs};
+use crate::components::{Clock, SpringForces, TouchingSpring};
+use crate::error::Error;
+use crate::systems::{find_surface_springs, find_thread_springs, find_tool_springs, seek_surfaces};
 use bevy_ecs::prelude::*;
 
 /// Those that touch.
@@ -13,6 +14,15 @@ pub(super) struct Springs {
 }
 
 impl Springs {
+    /// Looks which points of surfaces may touch what in the step that begins.
+    pub fn seek(world: &mut World) -> Result<(), Error> {
+        match &mut world.resource_mut::<Clock>().springs {
+            Some(springs) => springs.forces = SpringForces::Sought,
+            None => return Ok(()),
+        }
+        seek_surfaces(world)
+    }
+
     /// Finds those that touch where nodes are, after the systems have found forces there.
     pub fn find(&mut self, world: &mut World, axes: &Axes) {
         self.touching.clear();
@@ -22,11 +32,7 @@ impl Springs {
         let first_axis = |body| axes.each().find(|(other, _)| *other == body).map(|(_, range)| range.start);
         find_surface_springs(world, first_axis, &mut self.touching);
         find_tool_springs(world, first_axis, &mut self.touching);
-    }
-
-    /// Whether none touches.
-    pub fn is_empty(&self) -> bool {
-        self.touching.is_empty()
+        find_thread_springs(world, first_axis, &mut self.touching);
     }
 
     /// Takes a share of their forces from the residual (N) of free axes.
@@ -46,6 +52,16 @@ impl Springs {
             let [of_place, of_step] = spring.slopes;
             spring.add((of_place + of_step * step) * spring.relative(p) * share, image);
         }
+    }
+
+    pub fn count(&self) -> usize {
+        self.touching.len()
+    }
+    pub fn state(&self) -> String {
+        self.touching
+            .iter()
+            .map(|s| format!("[{:?} {:.2e}]", s.parts.iter().map(|p| p.0).collect::<Vec<_>>(), s.force.length()))
+            .collect()
     }
 
     /// The sum of the squares of their forces (N²).

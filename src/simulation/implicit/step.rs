@@ -107,6 +107,7 @@ impl Implicit {
         let times = [clock.time_at(clock.step), clock.time_at(clock.step + 1)];
         trial.world.resource_mut::<Signals>().evaluate((times[1], times[1]), times);
         trial.boundary()?;
+        Springs::seek(trial.world)?;
         if let Some(works) = works {
             works.begin(trial.world, axes);
         }

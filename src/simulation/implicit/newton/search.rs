@@ -2,6 +2,7 @@
 
 use super::super::trial::Tried;
 use super::{DESCENT, Lost, Newton, Way, Workspace};
+use crate::components::Clock;
 
 /// How often a way is shortened.
 const MOST_TRIES: u32 = 12;
@@ -61,7 +62,8 @@ impl Newton<'_, '_> {
     pub(super) fn search(&mut self, way: Way, size: &mut f64, enough: f64) -> Result<Tried, Lost> {
         self.space.from.copy_from_slice(&self.space.w);
         let begins = self.sums.dot(&self.space.p, &self.space.g);
-        let mut touches = !self.trial.springs.is_empty();
+        let touches = self.trial.world.resource::<Clock>().springs.is_some();
+        let moves = self.moves();
         let (mut share, mut bracket) = (1.0, Bracket::from(begins));
         for _ in 0..=MOST_TRIES {
             let Workspace { w, from, p, to_go, .. } = &mut *self.space;
@@ -69,18 +71,25 @@ impl Newton<'_, '_> {
                 w[axis] = from[axis] + share * (p[axis] + to_go[axis]);
             }
             let tried = self.forces_at_w()?;
-            touches |= !self.trial.springs.is_empty();
             let mut work = f64::NAN;
             if tried.sound {
                 let now = self.residual();
                 work = self.sums.dot(&self.space.p, &self.space.g);
                 let descends = self.descends(&way, (share, work), touches.then_some(&bracket));
-                if now.is_finite() && (descends || self.settings.newton == 1 || now <= enough) {
+                // of what is moved as told the work may be of either sign: it leads there where less is left
+                let arrives = touches && moves && now <= DESCENT * *size;
+                if now.is_finite() && (descends || arrives || self.settings.newton == 1 || now <= enough) {
                     self.space.to_go.iter_mut().for_each(|left| *left *= 1.0 - share);
                     *size = now;
                     return Ok(tried);
                 }
             }
+            eprintln!(
+                "  look share {share:.4e} begins {begins:.4e} along {:.4e} work {work:.4e} size {size:.4e} moves {moves} touching {} sound {}",
+                way.along,
+                self.trial.springs.count(),
+                tried.sound
+            );
             self.report.halvings += 1;
             share = if touches { bracket.next(share, work) } else { 0.5 * share };
         }
