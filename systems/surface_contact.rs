@@ -299,10 +299,12 @@ fn step<T: Scalar>(
     match &of.0.springs {
         Some(springs) if springs.forces == SpringForces::Sought => {
             contacts.surface.pairs.clear();
-            if let Some((true, _)) = search::<T>(contacts, of, bodies)? {
-                solved::pair(contacts);
+            if let Some((true, mut bodies)) = search::<T>(contacts, of, bodies)? {
+                solved::pair(contacts, of.0, &mut bodies);
             }
         }
+        // before the first step nobody has looked
+        Some(_) if contacts.surface.numbers.is_empty() => {}
         Some(springs) => {
             let mut bodies = slices_of::<T>(contacts, bodies)?;
             motion::update_places(contacts, &bodies, of.1);

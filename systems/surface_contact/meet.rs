@@ -24,7 +24,7 @@ impl SurfaceContacts {
 
     /// How far points that are inside and may be come out in this step (m): what they began with while a wave goes
     /// through the body, what the corners of faces have let in later a hundred times as slowly, since that does work.
-    fn settling(&self, clock: &Clock) -> f64 {
+    pub(super) fn settling(&self, clock: &Clock) -> f64 {
         match clock.relaxation {
             Some(_) => f64::INFINITY,
             None if clock.time() * self.settling < 0.5 * self.edge => self.settling * clock.time_step,

@@ -2,12 +2,12 @@
 
 use super::body_slices::{BodySlices, set_vector, vector_at};
 use super::faced::Found;
-use super::gather::{Gathered, InStep, Met};
+use super::gather::{Gathered, InStep, Met, allowed};
 use super::meet::{FACES, SLIDES, STICKS, forget, push, release};
 use super::{Meeting, SurfaceContacts};
 use crate::backend::cpu::IntegrationCoefficients;
 use crate::components::*;
-use crate::contact::Contact;
+use crate::contact::{Contact, Point};
 use crate::error::Error;
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
@@ -26,12 +26,14 @@ pub(super) struct Pair {
     normal: DVec3,
     /// Nodes with signed weights.
     nodes: SmallVec<[(u32, f64); 8]>,
+    /// How deep it may be inside (m, 0 or negative): as deep as it is found where it was not before.
+    allowed: f64,
     /// What is missing to the gap (m) beside the places of the nodes along the normal.
     offset: f64,
 }
 
 impl Pair {
-    /// How far the point is outside (m) where nodes are.
+    /// How far the point is outside of where it may be (m), where nodes are.
     fn gap(&self, places: &[DVec3]) -> f64 {
         let along = |&(node, weight): &(u32, f64)| weight * self.normal.dot(places[node as usize]);
         self.offset + self.nodes.iter().map(along).sum::<f64>()
@@ -72,11 +74,14 @@ pub(crate) fn find(world: &World, first_axis: impl Fn(Entity) -> Option<usize>, 
 }
 
 /// Finds which points may touch what in the step that begins, of what points face.
-pub(super) fn pair(contacts: &mut SurfaceContacts) {
+pub(super) fn pair<T: Scalar>(contacts: &mut SurfaceContacts, clock: &Clock, bodies: &mut [BodySlices<'_, T>]) {
+    let coefficients = IntegrationCoefficients::<f64>::of(clock);
+    let largest = contacts.surface.motion.largest;
+    let in_step = InStep { largest, settling: contacts.settling(clock), coefficients: &coefficients };
     let mut pairs = std::mem::take(&mut contacts.surface.pairs);
     let surface = &contacts.surface;
     let mut add = |pair: Pair, gap: f64| {
-        let offset = gap - pair.gap(&surface.places);
+        let offset = gap - pair.allowed - pair.gap(&surface.places);
         pairs.push(Pair { offset, ..pair });
     };
     for Found { place, faced, .. } in &surface.found {
@@ -89,8 +94,14 @@ pub(super) fn pair(contacts: &mut SurfaceContacts) {
             let (corners, weights) = surface.corners_of(point, facing);
             let of_face = corners.into_iter().zip(weights).map(|(node, weight)| (node, -weight));
             let nodes = point.parts().chain(of_face).collect();
-            let pair = Pair { meeting, point: number, first, normal: facing.normal, nodes, offset: 0.0 };
-            add(pair, contacts.gap(point, facing));
+            let (gap, kept) = (contacts.gap(point, facing), contacts.kept(number));
+            let allowed = match (first, &clock.springs) {
+                (true, _) => allowed(bodies[kept.body].kept_mut(kept), gap, &in_step),
+                (false, Some(springs)) => borne(contacts, (point, facing.normal, gap), (&meeting, springs), bodies),
+                (false, None) => 0.0,
+            };
+            let (point, normal) = (number, facing.normal);
+            add(Pair { meeting, point, first, normal, nodes, allowed, offset: 0.0 }, gap);
         }
     }
     // nothing is known of how edges slipped that cross
@@ -101,10 +112,38 @@ pub(super) fn pair(contacts: &mut SurfaceContacts) {
         let of_other = other.nodes.into_iter().zip(of_other).map(|(node, weight)| (node, -weight));
         let nodes = one.nodes.into_iter().zip(of_one).chain(of_other).collect();
         // nodes are the first of the points
-        let pair = Pair { meeting, point: one.nodes[0], first: false, normal: crossing.normal, nodes, offset: 0.0 };
+        let pair = Pair {
+            meeting,
+            point: one.nodes[0],
+            first: false,
+            normal: crossing.normal,
+            nodes,
+            allowed: 0.0,
+            offset: 0.0,
+        };
         add(pair, crossing.gap - meeting.thickness);
     }
     contacts.surface.pairs = pairs;
+}
+
+/// How deep a point may be inside of another face (m, 0 or negative), of which nothing is kept of how it got there: as
+/// deep as the force along its normal at the end of the last step does not tell of.
+fn borne<T: Scalar>(
+    contacts: &SurfaceContacts,
+    (point, normal, gap): (&Point, DVec3, f64),
+    (meeting, springs): (&Meeting, &SolvedSprings),
+    bodies: &[BodySlices<'_, T>],
+) -> f64 {
+    let Some(spring) = meeting.spring else { return 0.0 };
+    let (mut mass, mut force) = (0.0, 0.0);
+    for (node, weight) in point.parts() {
+        let (body, row) = contacts.surface.nodes[node as usize];
+        let of_body = &bodies[body as usize];
+        mass += weight * of_body.mass[row as usize].to_f64();
+        force += normal.dot(vector_at(of_body.force, 3 * row as usize));
+    }
+    let stiffness = spring.press(springs, mass, 0.0, [0.0, springs.step]).stiffness;
+    (gap + force.max(0.0) / stiffness).min(0.0)
 }
 
 /// Finds the forces of springs where nodes are. They are added to the loads, and what points carry on is noted, only
@@ -127,9 +166,10 @@ pub(super) fn press<T: Scalar>(
             gathered.facing.push(pair.point);
         }
         // what is no number is told by guards, not lost
-        if !(gap > 0.0) {
-            add(contacts, &mut gathered, (pair, gap), (&in_step, springs), bodies, &mut solved);
+        if gap > 0.0 {
+            continue;
         }
+        add(contacts, &mut gathered, (pair, gap), (&in_step, springs), bodies, &mut solved);
     }
     if springs.forces == SpringForces::Noted {
         let mut forces = std::mem::take(&mut contacts.surface.forces);
@@ -160,15 +200,15 @@ fn add<T: Scalar>(
     all: &mut Vec<Solved>,
 ) {
     let &Pair { meeting, point, first, normal, .. } = pair;
-    let met = Met { point, first, gap };
+    let met = Met { point, first, gap: gap + pair.allowed };
     let Some(spring) = meeting.spring else { return };
     let kept = contacts.kept(met.point);
     let touch = bodies[kept.body].kept_mut(kept);
-    let (state, before) = (touch[4].to_f64(), touch[5].to_f64());
+    let (state, before) = (touch[4].to_f64(), touch[5].to_f64() - touch[3].to_f64());
     let (touched, sticks) = (met.first && state >= STICKS, met.first && state == STICKS);
     let slip = if touched { vector_at(touch, 0) } else { DVec3::ZERO };
     let friction = meeting.friction[usize::from(!sticks)];
-    let mut contact = Contact::new((normal, met.gap), (friction, slip));
+    let mut contact = Contact::new((normal, gap), (friction, slip));
     let mut mass = 0.0;
     for &(node, weight) in &pair.nodes {
         let slot = gathered.slot_of(node, (&contacts.surface, in_step), bodies);
@@ -180,7 +220,7 @@ fn add<T: Scalar>(
     }
     let relative = contact.relative(&gathered.set.earlier);
     let time = 1.0 / in_step.coefficients.rate;
-    let press = spring.press(springs, mass, met.gap, [normal.dot(relative), time]);
+    let press = spring.press(springs, mass, gap, [normal.dot(relative), time]);
     let rubbing = press.rub(normal, contact.along(slip + relative), friction);
     let slopes = press.with(normal, &rubbing).1;
     (contact.pressing, contact.rubbing, contact.slides) = (press.pressing, rubbing.force, rubbing.slides);
@@ -206,7 +246,8 @@ fn note<T: Scalar>(
         let kept = contacts.kept(pair.point);
         let touch = bodies[kept.body].kept_mut(kept);
         set_vector(touch, 0, DVec3::ZERO);
-        (touch[3], touch[4], touch[5]) = (T::default(), T::from_f64(FACES), T::from_f64(gap));
+        let numbers = [pair.allowed, FACES, gap + pair.allowed];
+        touch[3..6].iter_mut().zip(numbers).for_each(|(touch, number)| *touch = T::from_f64(number));
     }
     contacts.surface.figures.contacts += gathered.set.contacts.len() as u64;
     for ((contact, met), Solved { was, rubbed, .. }) in gathered.set.contacts.iter().zip(&gathered.met).zip(all) {

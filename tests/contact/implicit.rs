@@ -98,7 +98,7 @@ fn pressed(solver: &str, share: f64) -> Simulation {
         &format!(
             "(duration: 0.3, {solver}
             bodies: {{\"layer\": (mesh: Box(size: (0.01, 0.01, 0.005), cells: (12, 12, 6), elements: Hex8), translate: (0, 0, -0.005), material: \"m\")}},
-            materials: {{\"m\": (density: 1060, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 20)}},
+            materials: {{\"m\": (density: 1060, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 60)}},
             constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: -0.005)),
                 Fixed(on: Plane(normal: (1, 0, 0), at: 0), axes: [X]), Fixed(on: Plane(normal: (0, 1, 0), at: 0), axes: [Y])],
             tools: {{\"ball\": (shape: Sphere(radius: 5e-3), at: (0, 0, 5e-3), moves: [(displacement: (0, 0, -8e-4), curve: Smooth(end: 0.2))])}},

@@ -174,14 +174,6 @@ impl Newton<'_, '_> {
             let needed = if self.settings.newton > 1 { 0.5 * enough / size } else { 0.0 };
             let way = self.solve_linear(forcing.max(needed).min(0.5))?;
             before = size;
-            if std::env::var("SINEW_TRACE").is_ok() {
-                eprintln!(
-                    "newton {iterations} size {size:.4e} enough {enough:.4e} touching {} along {:.3e} {}",
-                    self.trial.springs.count(),
-                    way.along,
-                    self.trial.springs.state()
-                );
-            }
             tried = match self.search(way, &mut size, enough) {
                 Err(Lost::Because(_)) if !moves && self.is_rounding(size)? => {
                     return Ok(self.left_of([first, size], true, remaining));

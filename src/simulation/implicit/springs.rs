@@ -1,5 +1,5 @@
-//! Springs of contact, and threads, where forces are tried. Which of them touch, and which stick or slide, is that of the place at which
-//! a Newton iteration takes its tangent: a difference of forces would see some of them let go, and others not.
+//! Springs of contact, and threads, where forces are tried. Which of them touch, and which stick or slide, is that of the
+//! place at which a Newton iteration takes its tangent: a difference of forces would see some let go, and others not.
 
 use super::axes::Axes;
 use crate::components::{Clock, SpringForces, TouchingSpring};
@@ -52,16 +52,6 @@ impl Springs {
             let [of_place, of_step] = spring.slopes;
             spring.add((of_place + of_step * step) * spring.relative(p) * share, image);
         }
-    }
-
-    pub fn count(&self) -> usize {
-        self.touching.len()
-    }
-    pub fn state(&self) -> String {
-        self.touching
-            .iter()
-            .map(|s| format!("[{:?} {:.2e}]", s.parts.iter().map(|p| p.0).collect::<Vec<_>>(), s.force.length()))
-            .collect()
     }
 
     /// The sum of the squares of their forces (N²).

@@ -84,12 +84,6 @@ impl Newton<'_, '_> {
                     return Ok(tried);
                 }
             }
-            eprintln!(
-                "  look share {share:.4e} begins {begins:.4e} along {:.4e} work {work:.4e} size {size:.4e} moves {moves} touching {} sound {}",
-                way.along,
-                self.trial.springs.count(),
-                tried.sound
-            );
             self.report.halvings += 1;
             share = if touches { bracket.next(share, work) } else { 0.5 * share };
         }
