@@ -111,8 +111,8 @@ fn pressed(solver: &str, share: f64) -> Simulation {
     )
 }
 
-/// The same springs press alike in explicit steps, whose shares are over the square of those steps. The work of the ball is in
-/// the layer, but for what damping and springs have.
+/// The same springs press alike in explicit steps, whose shares are over the square of those steps. The work of the
+/// ball is in the layer, but for what damping and springs have.
 #[test]
 fn a_ball_presses_as_in_explicit_steps() {
     let (share, shorter) = (4.0, 0.5_f64);

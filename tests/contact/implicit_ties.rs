@@ -43,8 +43,8 @@ fn a_suture_tears_at_its_strength() {
     near("work", energies.constraint_work.unwrap() - energies.kinetic, stored, stored, 0.05);
 }
 
-/// A cube that hangs from a thread of fixed ends is at m g/k below where it is slack: the thread is inside the forces of
-/// each step, which is far longer than what is stable with it.
+/// A cube that hangs from a thread of fixed ends is at m g/k below where it is slack: the thread is inside the forces
+/// of each step, which is far longer than what is stable with it.
 #[test]
 fn a_cube_hangs_from_a_stiff_thread() {
     let stiffness = 2000.0;

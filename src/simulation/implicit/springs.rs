@@ -1,5 +1,5 @@
-//! Springs of contact, and threads, where forces are tried. Which of them touch, and which stick or slide, is that of the
-//! place at which a Newton iteration takes its tangent: a difference of forces would see some let go, and others not.
+//! Springs of contact, and threads, where forces are tried. Which of them touch, and which stick or slide, is that of
+//! the place at which a Newton iteration takes its tangent: a difference of forces would see some let go, others not.
 
 use super::axes::Axes;
 use crate::components::{Clock, SpringForces, TouchingSpring};

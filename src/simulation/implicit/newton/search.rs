@@ -12,8 +12,8 @@ const FOUND: f64 = 0.5;
 /// Where along a way the work of the residual is nothing: it has one sign at its nearer end and the other at its
 /// farther one, or is no number there. Where springs begin to touch, or let go, it bends, and halving from the far end
 /// comes down to where they do not touch yet; the next iteration would go the same way. Turns of regula falsi
-/// (Illinois: of an end that stays the work is halved; Dowell & Jarratt 1971) and of bisection, so that it ends whatever
-/// the bend.
+/// (Illinois: of an end that stays the work is halved; Dowell & Jarratt 1971) and of bisection, so that it ends
+/// whatever the bend.
 #[derive(Clone, Copy, Debug)]
 struct Bracket {
     /// How far, and the work there (J).
