@@ -88,8 +88,9 @@ impl Motion {
     }
 
     /// Takes the last step into account: nodes have come nearer by what they went apart in it, at most. Where
-    /// displacements are not what steps make of them (on the way to equilibrium, in implicit steps, after a change of the
-    /// step, where somebody else has written them), or many steps have been added up, it is looked where nodes are.
+    /// displacements are not what steps make of them (on the way to equilibrium, in implicit steps, after a change
+    /// of the step, where somebody else has written them), or many steps have been added up, it is looked where
+    /// nodes are.
     pub fn follow<'a, T: Scalar>(&mut self, moving: &impl Moving<'a, T>, clock: &Clock, cpu: &Cpu) {
         let mut steps = Extremes::none();
         let mut as_stepped = self.watched.len() == self.runs.len();
