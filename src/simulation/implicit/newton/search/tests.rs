@@ -1,3 +1,5 @@
+#![allow(clippy::panic)]
+
 use super::*;
 
 /// How often it looks until the work has fallen to the share that is asked for.
