@@ -115,7 +115,12 @@ fn step<T: Scalar>(
             breaks(&mut state, TIE_NUMBERS * tie.place, WENT, clock);
         }
     }
-    work.set.solve(glue.sweeps);
+    match &clock.springs {
+        Some(springs) => work.press(springs),
+        None => work.set.solve(glue.sweeps),
+    }
+    // forces that are only tried leave everything as it is
+    let noted = clock.springs.is_none_or(|springs| springs.forces == SpringForces::Noted);
     let counts_work = clock.relaxation.is_none().then_some(coefficients.work_factor);
     work.forces.fill(DVec3::ZERO);
     for (number, tie) in glue.ties.iter().enumerate().filter(|(number, _)| work.set.ties[*number].holds) {
@@ -123,15 +128,24 @@ fn step<T: Scalar>(
         let Some(mut state) = state_of(tie, glue, bodies) else { continue };
         let at = TIE_NUMBERS * tie.place;
         // in a static analysis nothing breaks: pseudo-steps are no way that bodies take
-        if counts_work.is_some() && tie.strength.is_exceeded(solved.force, work.outs[number]) {
+        let breaks_now = noted && counts_work.is_some() && tie.strength.is_exceeded(solved.force, work.outs[number]);
+        if breaks_now && clock.springs.is_none() {
             breaks(&mut state, at, BROKE, clock);
             continue;
         }
         solved.parts.iter().for_each(|&(node, weight)| work.forces[node as usize] += solved.force * weight);
+        if !noted {
+            continue;
+        }
+        let force = mean_force(&state, at, solved.force, clock);
         state.set_vector_at(at + 2, solved.force);
+        if breaks_now {
+            // the step was found with its force
+            breaks(&mut state, at, BROKE, clock);
+        }
         if let Some(work_factor) = counts_work {
             let (before, after) = (solved.relative(&work.before), solved.relative(&work.set.steps));
-            let taken = -work_factor * solved.force.dot(0.5 * (before + after));
+            let taken = -work_factor * force.dot(0.5 * (before + after));
             let sum = state.get(at + 5) + taken;
             state.set(at + 5, sum);
         }
@@ -142,6 +156,11 @@ fn step<T: Scalar>(
 
 fn state_of<'a>(tie: &TiedPoint, glue: &Glue, bodies: &'a mut Query<TiedColumns>) -> Option<Mut<'a, TieState>> {
     bodies.get_mut(glue.bodies[tie.bodies[0]]).ok()?.state
+}
+
+/// The force (N) that works in a step: in an implicit one the mean of those at both ends.
+fn mean_force(state: &TieState, at: usize, force: DVec3, clock: &Clock) -> DVec3 {
+    if clock.springs.is_some() { 0.5 * (state.vector_at(at + 2) + force) } else { force }
 }
 
 fn breaks(state: &mut TieState, at: usize, how: f64, clock: &Clock) {

@@ -1,5 +1,7 @@
 //! `grasp`: closed tools take nodes along. `shaders/grasp.wgsl` is its twin.
 
+mod solved;
+
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
@@ -15,6 +17,7 @@ use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
 use glam::{DMat3, DVec3};
+pub(crate) use solved::{HeldNode, held_in_step, note_held};
 
 /// A node that a closed tool holds stays at the place in the tool's frame where it was when the tool closed: motion
 /// that is prescribed by a frame. Like `tool_contact` it finds the force that takes the predicted step there, after all
@@ -38,6 +41,8 @@ const WITHOUT: f64 = 2.0;
 
 /// What a step needs.
 pub struct GraspStep {
+    /// Whether steps are implicit, which hold the axes of nodes.
+    solved: bool,
     coefficients: IntegrationCoefficients<f64>,
     /// Whether work is counted: not on the way to rest.
     counts_work: bool,
@@ -76,6 +81,7 @@ impl NodeSystem for Grasps {
             *tool = ToolInStep { closed: values[grasp.closed][1] > 0.0, pose, change };
         }
         GraspStep {
+            solved: before.clock.springs.is_some(),
             coefficients: IntegrationCoefficients::of(before.clock),
             counts_work: before.clock.relaxation.is_none(),
             tools,
@@ -88,6 +94,9 @@ impl NodeSystem for Grasps {
     }
 
     fn act<T: SimdScalar>(&self, step: &GraspStep, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        if step.solved {
+            return;
+        }
         let Some(holds) = nodes.holds.take() else { return };
         let own = places_within(&self.rows, nodes.first, nodes.rows());
         let count = self.numbers_a_grasp();

@@ -74,6 +74,7 @@ pub use crate::backend::cpu::{Cpu, NodeColumns};
 pub use crate::math::SimdScalar;
 pub(crate) use gather::sum_corners;
 pub(crate) use grab::{bytes_of as grab_bytes, uniform_of as grab_uniform};
+pub(crate) use grasp::{HeldNode, held_in_step, note_held};
 #[doc(hidden)]
 pub use gravity::Gravity;
 pub(crate) use host_forces::SlopesOf;
@@ -95,13 +96,15 @@ pub use pressure::Pressure;
 pub use registry::Registry;
 pub use repeat::Repeat;
 pub use rows::{RowSet, Rows};
-pub(crate) use surface_contact::find_surfaces;
 #[doc(hidden)]
 pub use surface_contact::{Meeting, SurfaceContacts, SurfaceMemory};
+pub(crate) use surface_contact::{find_surface_springs, find_surfaces, seek_surfaces};
+pub(crate) use suture_tension::find_thread_springs;
 pub(crate) use system::BeforeSteps;
 #[doc(hidden)]
 pub use system::{Because, DescribeKernels, HostSystem, OnDevice, OnHost};
 pub use system::{Outcome, Phase, System};
+pub(crate) use tool_contact::find_tool_springs;
 #[doc(hidden)]
 pub use traction::Traction;
 

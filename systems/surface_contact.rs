@@ -10,6 +10,7 @@ mod look;
 mod meet;
 mod memory;
 mod motion;
+mod solved;
 mod survey;
 
 use super::node_slices::BodyColumns;
@@ -22,10 +23,12 @@ use crate::error::{Error, missing};
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
+use body_slices::BodySlices;
 pub(crate) use device::find as find_surfaces;
 use glam::DVec3;
 pub(super) use kernels::ForeseenNodes;
 pub use memory::SurfaceMemory;
+pub(crate) use solved::{find as find_surface_springs, seek as seek_surfaces};
 use std::time::Duration;
 
 /// The explicit Lagrange correction of the predicted step, of points of surfaces against faces of others (see
@@ -161,6 +164,10 @@ struct Surface {
     // what a step finds, kept so that the next one need not ask for memory
     found: Vec<faced::Found>,
     gathered: gather::Gathered,
+    /// What may touch in an implicit step.
+    pairs: Vec<solved::Pair>,
+    /// Of each contact of an implicit step what it did at the end of the last one, and its slopes.
+    solved: Vec<solved::Solved>,
     forces: Vec<DVec3>,
     figures: Figures,
 }
@@ -271,7 +278,11 @@ fn surface_contact(
     blocks: Query<Ref<Alive>>,
 ) -> Result<(), Error> {
     let contacts = &mut *contacts;
-    survey::follow(contacts, &mut bodies, &authorings, &blocks);
+    match clock.springs.map(|springs| springs.forces) {
+        None | Some(SpringForces::Sought) => survey::follow(contacts, &mut bodies, &authorings, &blocks),
+        Some(SpringForces::Tried | SpringForces::Noted) => {}
+        Some(SpringForces::Omitted) => return Ok(()),
+    }
     let precision = bodies.iter().next().map(|(_, columns)| columns.nodes.u.precision());
     match precision {
         Some(Precision::F32) => step::<f32>(contacts, (&clock, &cpu), &mut bodies),
@@ -282,27 +293,68 @@ fn surface_contact(
 
 fn step<T: Scalar>(
     contacts: &mut SurfaceContacts,
-    (clock, cpu): (&Clock, &Cpu),
+    of: (&Clock, &Cpu),
     bodies: &mut Query<(Entity, MeetingColumns)>,
 ) -> Result<(), Error> {
+    match &of.0.springs {
+        Some(springs) if springs.forces == SpringForces::Sought => {
+            contacts.surface.pairs.clear();
+            if let Some((true, mut bodies)) = search::<T>(contacts, of, bodies)? {
+                solved::pair(contacts, of.0, &mut bodies);
+            }
+        }
+        // before the first step nobody has looked
+        Some(_) if contacts.surface.numbers.is_empty() => {}
+        Some(springs) => {
+            let mut bodies = slices_of::<T>(contacts, bodies)?;
+            motion::update_places(contacts, &bodies, of.1);
+            solved::press(contacts, (of.0, springs), &mut bodies);
+        }
+        None => match search::<T>(contacts, of, bodies)? {
+            None => {}
+            Some((false, mut bodies)) => {
+                meet::release(&mut contacts.surface, &mut bodies);
+                meet::forget(contacts, &[], &mut bodies);
+            }
+            Some((true, mut bodies)) => {
+                meet::meet(contacts, of, &mut bodies);
+                contacts.surface.figures.contacts += contacts.surface.gathered.set.contacts.len() as u64;
+            }
+        },
+    }
+    Ok(())
+}
+
+fn slices_of<'a, T: Scalar>(
+    contacts: &SurfaceContacts,
+    bodies: &'a mut Query<(Entity, MeetingColumns)>,
+) -> Result<Vec<BodySlices<'a, T>>, Error> {
+    let bodies = body_slices::slices::<T>(contacts, bodies);
+    if bodies.len() == contacts.bodies.len() { Ok(bodies) } else { Err(missing("a column of a body")) }
+}
+
+/// Bodies as slices, and whether anything may be near anything.
+type Searched<'a, T> = (bool, Vec<BodySlices<'a, T>>);
+
+/// Finds what points face; `None` where nothing was near anything in the last step, and nothing can be now.
+fn search<'a, T: Scalar>(
+    contacts: &mut SurfaceContacts,
+    (clock, cpu): (&Clock, &Cpu),
+    bodies: &'a mut Query<(Entity, MeetingColumns)>,
+) -> Result<Option<Searched<'a, T>>, Error> {
     contacts.surface.figures.steps += 1;
     let reach = follow::<T>(contacts, (clock, cpu), bodies);
     if contacts.sleeps(reach) {
         contacts.surface.figures.asleep += 1;
-        return Ok(());
+        return Ok(None);
     }
-    let mut bodies = body_slices::slices::<T>(contacts, bodies);
-    if bodies.len() != contacts.bodies.len() {
-        return Err(missing("a column of a body"));
-    }
+    let bodies = slices_of::<T>(contacts, bodies)?;
     if !contacts.lists_hold(reach) {
         motion::list(contacts, &bodies, reach, cpu);
     }
     if !faced::wake(contacts, reach) && contacts.surface.crossings.near.is_empty() {
         contacts.surface.figures.asleep += 1;
-        meet::release(&mut contacts.surface, &mut bodies);
-        meet::forget(contacts, &[], &mut bodies);
-        return Ok(());
+        return Ok(Some((false, bodies)));
     }
     motion::update_places(contacts, &bodies, cpu);
     if !contacts.shortlists_hold(reach) {
@@ -310,10 +362,8 @@ fn step<T: Scalar>(
     }
     faced::face(contacts, reach, cpu);
     crossings::find(contacts, reach);
-    meet::meet(contacts, (clock, cpu), &mut bodies);
     contacts.surface.figures.examined += contacts.surface.found.len() as u64;
-    contacts.surface.figures.contacts += contacts.surface.gathered.set.contacts.len() as u64;
-    Ok(())
+    Ok(Some((true, bodies)))
 }
 
 /// Follows how nodes move; gives how far faces must be looked at (m). It is looked where nodes are when what their

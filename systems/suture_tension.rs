@@ -1,6 +1,7 @@
 //! `suture_tension`: how hard sutures pull, and which of them tear.
 
 mod kernels;
+mod solved;
 
 use super::node_slices::elements_stay;
 use super::system::{Phase, System};
@@ -8,6 +9,7 @@ use crate::components::*;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
 use glam::DVec3;
+pub(crate) use solved::find as find_thread_springs;
 
 /// A suture is a spring between two points that pulls and does not push: f = k max(0, l − l₀) along the line between
 /// them, as they are at the beginning of the step, l₀ what knots have left of its length. Where the tension is its
@@ -62,38 +64,32 @@ fn suture_tension(
     for mut columns in &mut bodies {
         columns.sutured.forces.fill(DVec3::ZERO);
     }
-    for suture in &sutures.all {
+    // of those that are only tried the solver knows, and everything stays as it is
+    let noted = clock.springs.is_none_or(|springs| springs.forces == SpringForces::Noted);
+    for suture in sutures.all.iter().filter(|_| noted) {
         let [first, second] = &suture.ends;
         let at = SUTURE_NUMBERS * suture.place;
         let state = bodies.get(first.body).ok().and_then(|columns| columns.state.map(|state| state.get(at)));
         if state != Some(HOLDS) {
             continue;
         }
-        let [from, to] = [first, second].map(|end| place(end, sutures.reference, &bodies));
-        let (way, length) = (to - from, from.distance(to));
-        let whole = suture.tension(length, signals.values()[suture.signal][0]);
-        let is_there = |end: &Anchor| {
-            let alive = blocks.get(end.element.0).ok();
-            alive.is_none_or(|alive| alive[end.element.1 as usize] == 1)
-        };
-        let left = if is_there(first) && is_there(second) {
-            mass_left(first, &bodies).min(mass_left(second, &bodies))
-        } else {
-            0.0
-        };
+        let Drawn { way, length, whole, left } = draw(suture, (&sutures, &signals), &bodies.as_readonly(), &blocks);
         // in a static analysis nothing tears: pseudo-steps are no way that a thread takes
         let becomes = match clock.relaxation {
             None if left <= 0.0 => CAME_OUT,
             None if whole >= suture.strength => TORE,
             _ => HOLDS,
         };
-        let tension = if becomes == HOLDS { left * whole } else { 0.0 };
+        // an implicit step is found with the force of a thread that tears at its end
+        let pulls = becomes == HOLDS || clock.springs.is_some();
+        let tension = if pulls { left * whole } else { 0.0 };
         if tension > 0.0 {
             let force = way * (tension / length);
             pull(first, force, &mut bodies);
             pull(second, -force, &mut bodies);
         }
         let Some(mut state) = bodies.get_mut(first.body).ok().and_then(|columns| columns.state) else { continue };
+        let tension = if becomes == HOLDS { tension } else { 0.0 };
         state.set(at + 2, tension);
         state.set(at + 3, length);
         if becomes != HOLDS {
@@ -109,8 +105,38 @@ fn suture_tension(
     }
 }
 
+/// How a thread is drawn.
+struct Drawn {
+    /// From its first end to the second (m), and how long that is.
+    way: DVec3,
+    length: f64,
+    /// Its tension (N), and the share of it that the tissue that is left bears.
+    whole: f64,
+    left: f64,
+}
+
+fn draw(
+    suture: &Suture,
+    (sutures, signals): (&Sutures, &Signals),
+    bodies: &Query<SuturedColumnsReadOnly>,
+    blocks: &Query<&Alive>,
+) -> Drawn {
+    let [first, second] = &suture.ends;
+    let [from, to] = [first, second].map(|end| place(end, sutures.reference, bodies));
+    let (way, length) = (to - from, from.distance(to));
+    let is_there = |end: &Anchor| {
+        let alive = blocks.get(end.element.0).ok();
+        alive.is_none_or(|alive| alive[end.element.1 as usize] == 1)
+    };
+    let left = match is_there(first) && is_there(second) {
+        true => mass_left(first, bodies).min(mass_left(second, bodies)),
+        false => 0.0,
+    };
+    Drawn { way, length, whole: suture.tension(length, signals.values()[suture.signal][0]), left }
+}
+
 /// Where an end is (m, from the reference).
-fn place(end: &Anchor, reference: DVec3, bodies: &Query<SuturedColumns>) -> DVec3 {
+fn place(end: &Anchor, reference: DVec3, bodies: &Query<SuturedColumnsReadOnly>) -> DVec3 {
     let Ok(columns) = bodies.get(end.body) else { return DVec3::ZERO };
     let of = |&(row, weight): &(u32, f64)| {
         weight * (columns.rest.0[row as usize] - reference + columns.u.vector(row as usize))
@@ -119,7 +145,7 @@ fn place(end: &Anchor, reference: DVec3, bodies: &Query<SuturedColumns>) -> DVec
 }
 
 /// The least share of its mass at the start that one of the nodes of an end has left.
-fn mass_left(end: &Anchor, bodies: &Query<SuturedColumns>) -> f64 {
+fn mass_left(end: &Anchor, bodies: &Query<SuturedColumnsReadOnly>) -> f64 {
     let Ok(columns) = bodies.get(end.body) else { return 0.0 };
     let of = |&(row, _): &(u32, f64)| {
         let start = columns.sutured.place(row).map_or(0.0, |place| columns.sutured.masses[place]);

@@ -1,6 +1,8 @@
 //! `tool_contact`: rigid tools keep nodes outside. `shaders/tool_contact.wgsl` is its twin.
 
+mod in_step;
 mod row;
+mod solved;
 mod stage;
 mod sweep;
 
@@ -10,15 +12,18 @@ use super::places_within;
 use super::rows::Rows;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, Foreseen, IntegrationCoefficients, NodeColumns};
+use crate::backend::cpu::{Cpu, Foreseen, NodeColumns};
 use crate::backend::kernel::{Uniform, uniform};
 use crate::backend::node_stage::NodeStage;
 use crate::components::*;
 use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
-use glam::{DMat3, DVec3};
+use glam::DVec3;
+pub use in_step::ContactStep;
+use in_step::ToolInStep;
 use smallvec::SmallVec;
+pub(crate) use solved::find as find_tool_springs;
 pub(super) use stage::{ToolNodes, stage as tool_stage};
 
 /// The explicit Lagrange correction of the predicted step: each node's next step d* is predicted as `integrate` will
@@ -49,30 +54,6 @@ const SLIDES: f64 = 2.0;
 
 /// How often tools at one node take turns.
 const TURNS: usize = 12;
-
-/// What a step needs.
-pub struct ContactStep {
-    coefficients: IntegrationCoefficients<f64>,
-    /// How far a node that is inside a tool comes out in this step (m).
-    out: f64,
-    /// Whether work is counted: not on the way to rest.
-    counts_work: bool,
-    /// As many as there are, and then anything.
-    tools: [ToolInStep; ToolContacts::MOST],
-}
-
-/// A tool in a step.
-#[derive(Clone, Copy)]
-struct ToolInStep {
-    /// Where it is at the end.
-    pose: Pose,
-    /// Where it was at the beginning.
-    earlier: Pose,
-    /// How these differ.
-    change: Pose,
-    /// Middle and radius of a ball (m) with all that the tool may touch; none of a plane.
-    ball: Option<(DVec3, f64)>,
-}
 
 /// A tool at a node.
 #[derive(Clone, Copy, Default)]
@@ -115,25 +96,7 @@ impl NodeSystem for ToolContacts {
     }
 
     fn prepare(&self, before: &Before<'_>) -> ContactStep {
-        let values = before.signals.values();
-        let nowhere = Pose { rotation: DMat3::ZERO, at: DVec3::ZERO };
-        let none = ToolInStep { pose: nowhere, earlier: nowhere, change: nowhere, ball: None };
-        let mut tools = [none; ToolContacts::MOST];
-        for (tool, contact) in tools.iter_mut().zip(&self.tools) {
-            let [pose, change] = [0, 3].map(|slot| Pose::of_slots(&values[contact.signal + slot..]));
-            let ball = contact.geometry.bounding_sphere();
-            let earlier = pose.less(&change);
-            // of one whose way is looked at, the ball goes along
-            let goes = |center| if contact.swept > 0.0 { change.place(center).length() } else { 0.0 };
-            let ball = ball.map(|(center, radius)| (pose.place(center), radius + self.edge + goes(center)));
-            *tool = ToolInStep { pose, earlier, change, ball };
-        }
-        ContactStep {
-            coefficients: IntegrationCoefficients::of(before.clock),
-            out: self.out(before.clock),
-            counts_work: before.clock.relaxation.is_none(),
-            tools,
-        }
+        self.in_step(before.clock, before.signals)
     }
 
     /// None: it corrects the step to come and no more, so that the stable step stays (docs/contact.md).
@@ -146,44 +109,21 @@ impl NodeSystem for ToolContacts {
         let own = places_within(&self.rows, nodes.first, nodes.rows());
         for (place, (&row, &mask)) in self.rows[own.clone()].iter().zip(&self.masks[own]).enumerate() {
             let values = &mut touches.values[touches.numbers * place..touches.numbers * (place + 1)];
-            self.touch(step, row as usize - nodes.first, mask, nodes, values);
+            let row = row as usize - nodes.first;
+            match &step.springs {
+                Some(springs) if springs.forces == SpringForces::Noted => {
+                    self.press((step, springs), (row, mask), nodes, values);
+                }
+                // the solver finds them apart
+                Some(_) => {}
+                None => self.touch(step, row, mask, nodes, values),
+            }
         }
         nodes.touches = Some(touches);
     }
 }
 
-impl ContactStep {
-    /// Which of some tools may touch a node at a place (m, from the reference); both as bits.
-    #[inline]
-    fn near(&self, tools: u32, place: DVec3) -> u32 {
-        let (mut left, mut near) = (tools, 0);
-        while left != 0 {
-            let tool = left.trailing_zeros();
-            left &= left - 1;
-            let is_far = match self.tools[tool as usize].ball {
-                Some((center, radius)) => center.distance_squared(place) > radius * radius,
-                None => false,
-            };
-            near |= u32::from(!is_far) << tool;
-        }
-        near
-    }
-}
-
 impl ToolContacts {
-    /// The bits of all tools.
-    fn all(&self) -> u32 {
-        u32::MAX >> (u32::BITS - self.tools.len().max(1) as u32)
-    }
-
-    /// How far a node that is inside a tool comes out in a step (m).
-    fn out(&self, clock: &Clock) -> f64 {
-        match clock.relaxation {
-            Some(_) => 0.1 * self.edge,
-            None => self.settling * clock.time_step,
-        }
-    }
-
     /// What tools do to one node.
     fn touch<T: SimdScalar>(
         &self,

@@ -1,5 +1,6 @@
 //! Time.
 
+use super::SolvedSprings;
 use super::curve::smooth;
 use bevy_ecs::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -21,13 +22,24 @@ pub struct Clock {
     /// Whether velocities are those at the ends of steps, as implicit steps have them; else of their middles.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub velocities_at_ends: bool,
+    /// The springs of contact of implicit steps, where bodies may touch something.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub springs: Option<SolvedSprings>,
 }
 
 impl Clock {
     /// At the beginning of a motion in steps of Δt (s).
     #[doc(hidden)]
     pub fn with_step(time_step: f64) -> Self {
-        Self { step: 0, time_step, since: (0, 0.0), before: time_step, relaxation: None, velocities_at_ends: false }
+        Self {
+            step: 0,
+            time_step,
+            since: (0, 0.0),
+            before: time_step,
+            relaxation: None,
+            velocities_at_ends: false,
+            springs: None,
+        }
     }
 
     /// Whether it can be the clock of a motion: steps are positive and finite, and Δt is what it is since a step that
@@ -36,7 +48,13 @@ impl Clock {
     pub fn is_sound(&self) -> bool {
         let step = |step: f64| step.is_finite() && step > 0.0;
         let since = self.since.0 <= self.step && self.since.1.is_finite() && self.since.1 >= 0.0;
-        step(self.time_step) && step(self.before) && since && self.relaxation.is_none() && self.time().is_finite()
+        let springs = self.springs.is_none_or(|springs| step(springs.step));
+        step(self.time_step)
+            && step(self.before)
+            && springs
+            && since
+            && self.relaxation.is_none()
+            && self.time().is_finite()
     }
 
     /// The step that is nearest to a time (s), in steps as they are now: the present one at least.

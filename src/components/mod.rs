@@ -29,6 +29,7 @@ mod observation;
 mod own_load;
 mod patches;
 mod signal;
+mod springs;
 mod suction;
 mod suture;
 mod tool;
@@ -92,6 +93,8 @@ pub use own_load::{LoadText, NodeAtRest, OfSystem, OwnLoad};
 pub use patches::Patches;
 #[doc(hidden)]
 pub use signal::Signal;
+#[doc(hidden)]
+pub use springs::{Rubbing, SolvedPress, SolvedSprings, SpringForces, TouchingSpring};
 #[doc(hidden)]
 pub use suction::{BodyFaces, FacePresence, NO_FACE, SUCTION_NUMBERS, Suction, SuctionMarks, SuctionPressure, share};
 #[doc(hidden)]

@@ -50,6 +50,11 @@ pub struct Suture {
 }
 
 impl Suture {
+    /// Its length without tension (m), with a factor of what knots shorten; of one that is not known yet infinite.
+    pub fn slack(&self, factor: f64) -> f64 {
+        (self.length.unwrap_or(f64::INFINITY) - self.tighten * factor).max(0.0)
+    }
+
     /// Its tension (N) at a length (m), with a factor of what knots shorten.
     pub fn tension(&self, length: f64, factor: f64) -> f64 {
         let rest = (self.length.unwrap_or(length) - self.tighten * factor).max(0.0);

@@ -88,7 +88,7 @@ impl Contact {
     }
 
     /// The part of a vector along the surface.
-    fn along(&self, vector: DVec3) -> DVec3 {
+    pub fn along(&self, vector: DVec3) -> DVec3 {
         vector - self.normal * vector.dot(self.normal)
     }
 

@@ -55,12 +55,8 @@ impl TieSet {
     /// momentum is kept to rounding, and the kinetic energy does not grow where nothing was off. What one sweep leaves
     /// is carried on to the next step.
     pub fn solve(&mut self, sweeps: usize) {
+        self.split();
         let Self { ties, steps, responses, shares } = self;
-        shares.clear();
-        shares.resize(steps.len(), 0.0);
-        for &(node, weight) in ties.iter().filter(|tie| tie.holds).flat_map(|tie| &tie.parts) {
-            shares[node as usize] += weight.abs();
-        }
         for tie in ties.iter_mut().filter(|tie| tie.holds) {
             let of = |&(node, weight): &(u32, f64)| {
                 weight.abs() * shares[node as usize] * responses[node as usize].max_element()
@@ -81,7 +77,29 @@ impl TieSet {
         }
     }
 
-    /// Whether a tie that holds acts on a node, as of the last [`solve`](Self::solve).
+    /// Splits the mass of each node among the ties that hold it.
+    fn split(&mut self) {
+        let Self { ties, steps, shares, .. } = self;
+        shares.clear();
+        shares.resize(steps.len(), 0.0);
+        for &(node, weight) in ties.iter().filter(|tie| tie.holds).flat_map(|tie| &tie.parts) {
+            shares[node as usize] += weight.abs();
+        }
+    }
+
+    /// Finds the forces of springs in their place, as implicit steps solve for them: −k o, k so much (1/s²) times the
+    /// mass of the point, of the nodes' masses (kg).
+    pub fn press(&mut self, masses: &[f64], per_mass: f64) {
+        self.split();
+        for tie in self.ties.iter_mut().filter(|tie| tie.holds) {
+            let of_point = tie.parts.iter().filter(|(_, weight)| *weight > 0.0);
+            let mass: f64 = of_point.map(|&(node, weight)| weight * masses[node as usize]).sum();
+            tie.force = tie.off * (-per_mass * mass);
+        }
+    }
+
+    /// Whether a tie that holds acts on a node, as of the last [`solve`](Self::solve) or
+    /// [`press`](Self::press).
     pub fn is_tied(&self, node: usize) -> bool {
         self.shares.get(node).is_some_and(|shares| *shares > 0.0)
     }

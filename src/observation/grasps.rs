@@ -7,6 +7,8 @@ use glam::DVec3;
 
 /// Adds what a tool feels of what it holds, with all columns on the host and tools where they are now.
 pub(super) fn read(world: &mut World, tool: &str, now: &[(usize, Pose)], reading: &mut ToolReading) {
+    // implicit steps have their forces at their ends
+    let back = if world.resource::<Clock>().velocities_at_ends { 0.0 } else { 1.0 };
     let mut bodies = world.query::<(&Grasps, &ToolHold, &Mass, &RestPosition, &Displacement, &DisplacementIncrement)>();
     for (grasps, hold, mass, rest, u, step) in bodies.iter(world) {
         for (number, grasp) in grasps.grasps.iter().enumerate().filter(|(_, grasp)| grasp.tool.tool == tool) {
@@ -21,7 +23,7 @@ pub(super) fn read(world: &mut World, tool: &str, now: &[(usize, Pose)], reading
                 // nodes whose elements are gone are held by nobody
                 if hold.get(first + 3) == 1.0 && mass.get(row) > 0.0 {
                     let force = -hold.vector_at(first);
-                    let begin = rest.0[row] - grasps.reference + u.vector(row) - step.vector(row);
+                    let begin = rest.0[row] - grasps.reference + u.vector(row) - back * step.vector(row);
                     reading.nodes += 1;
                     reading.force += force;
                     reading.torque += (begin - pose.at).cross(force);

@@ -74,6 +74,8 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
         Some(relaxation) => world.resource::<Signals>().poses_at_share(relaxation.end, relaxation.share(clock.step)),
         None => world.resource::<Signals>().poses_at(clock.time()),
     };
+    // implicit steps have their forces at their ends
+    let back = if clock.velocities_at_ends { 0.0 } else { 1.0 };
     let mut reading = ToolReading::default();
     let mut bodies =
         world.query::<(&ToolContacts, &ToolTouch, &Mass, &RestPosition, &Displacement, &DisplacementIncrement)>();
@@ -107,7 +109,7 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
                     let force = -DVec3::new(number(0), number(1), number(2));
                     reading.nodes += 1;
                     reading.force += force;
-                    reading.torque += (end - step.vector(row) - pose.at).cross(force);
+                    reading.torque += (end - back * step.vector(row) - pose.at).cross(force);
                 }
             }
         }

@@ -8,7 +8,6 @@ mod kernels;
 mod page;
 
 use super::Simulation;
-use super::implicit::is_of_forces;
 use super::known::Known;
 use super::plan::{Pass, Plan, Planned};
 use crate::backend::dispatch::Dispatched;
@@ -284,7 +283,7 @@ impl Simulation {
         let of_forces = |kernel: &&KernelInUse| {
             let first = kernel.system.split(" + ").next();
             let planned = plan.systems.iter().find(|planned| Some(planned.name.as_str()) == first);
-            planned.is_some_and(|planned| is_of_forces(planned.phase))
+            planned.is_some_and(Planned::finds_forces)
         };
         let forces_on_gpu = on_gpu.then(|| kernels.iter().filter(of_forces).map(|kernel| kernel.times).sum());
         for system in &mut systems {

@@ -140,6 +140,8 @@ struct ScheduledPass {
     name: String,
     /// Of the last of its systems.
     phase: Phase,
+    /// Whether one of them finds forces.
+    finds_forces: bool,
     /// Places of its systems in the plan.
     systems: Vec<usize>,
     job: Job,

@@ -8,7 +8,7 @@ use super::schedule::Scheduled;
 use super::scheme::Summed;
 use crate::backend::dispatch::Dispatched;
 use crate::backend::kernel::Kernel;
-use crate::components::{ColumnAccess, Touched};
+use crate::components::{Column, ColumnAccess, SutureForce, Touched};
 use crate::systems::{Phase, Repeat, RowSet};
 use bevy_ecs::prelude::World;
 use bevy_ecs::system::SystemAccess;
@@ -83,6 +83,13 @@ pub(super) enum Over {
     Elements,
     /// Nodes that are inside no patch.
     Shared,
+}
+
+impl Planned {
+    /// Whether it finds forces, or what those of others need: threads are looked at before all.
+    pub fn finds_forces(&self) -> bool {
+        self.phase > Phase::Boundary && self.phase < Phase::Integrate || self.writes.contains(&SutureForce::NAME)
+    }
 }
 
 impl Plan {

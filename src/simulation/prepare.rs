@@ -56,7 +56,9 @@ pub(super) fn prepare<'a>(
     outputs::check(scene, &clock, steps, diagnostics);
     outputs::check_curves(scene, &clock, diagnostics);
     plausible::check(&assembly, world, diagnostics);
-    contact_springs::check(&scene.scene, &stability, diagnostics);
+    if !clock.velocities_at_ends {
+        contact_springs::check(&scene.scene, &stability, diagnostics);
+    }
     world.insert_resource(clock);
     world.insert_resource(Observed(true));
     if clock.velocities_at_ends {
@@ -106,7 +108,9 @@ fn clock(
     if let Solver::Implicit { step, .. } = scene.scene.solver {
         let bound = stable_step::found_bound(world, diagnostics)?;
         let steps = (scene.scene.duration / step).round().max(1.0) as u64;
-        let clock = Clock { velocities_at_ends: true, ..Clock::with_step(step) };
+        let touches = !scene.scene.contacts.is_empty() || !scene.scene.attachments.is_empty();
+        let springs = touches.then_some(SolvedSprings { step: bound.time_step, forces: SpringForces::Tried });
+        let clock = Clock { velocities_at_ends: true, springs, ..Clock::with_step(step) };
         return Some((clock, Stability::of_implicit(bound, step), steps));
     }
     let (stability, time_step, steps) = stable_step::choose(scene, known, world, diagnostics)?;

@@ -9,6 +9,10 @@ use crate::systems::node_slices::{NodeSlices, vector};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
+/// How stiff ties are in implicit steps, as shares of contact count it: under a pull p, ends of elements of edge a and
+/// modulus M come apart by 2 a p/(100 M), a fiftieth of what the elements are drawn out by.
+const STIFF: f64 = 100.0;
+
 /// The nodes that ties act on, each once, by bodies and rows: places in [`Glue::bodies`], and rows there.
 pub(super) fn nodes_of(glue: &Glue) -> Vec<(usize, u32)> {
     let of_tie = |tie: &TiedPoint| {
@@ -125,6 +129,12 @@ impl Work {
             self.outs[number] = out;
         }
         (solved.holds, solved.off, solved.force) = (true, point - belongs, DVec3::ZERO);
+    }
+
+    /// Finds the forces of springs in place of ties, whose nodes are where they are tried.
+    pub fn press(&mut self, springs: &SolvedSprings) {
+        self.set.press(&self.masses, STIFF / (springs.step * springs.step));
+        self.set.steps.clone_from(&self.before);
     }
 
     /// Adds the forces to the loads of nodes that are tied.

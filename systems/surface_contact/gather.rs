@@ -64,7 +64,7 @@ impl Gathered {
     }
 
     /// The place in the set of a node of a surface, and where that would go.
-    fn slot_of<T: Scalar>(
+    pub(super) fn slot_of<T: Scalar>(
         &mut self,
         node: u32,
         (surface, in_step): (&Surface, &InStep<'_>),
@@ -103,7 +103,7 @@ impl Gathered {
 /// How deep a point may be inside (m) that is so far outside (m) of what it faces: as deep as it is found there and no
 /// motion has brought it, by and by less. A point that was not seen before (at the start, laid bare, at a corner that
 /// comes round) is not thrown out in a step.
-fn allowed<T: Scalar>(touch: &[T], gap: f64, in_step: &InStep<'_>) -> f64 {
+pub(super) fn allowed<T: Scalar>(touch: &[T], gap: f64, in_step: &InStep<'_>) -> f64 {
     let expected = match touch[4].to_f64() {
         FREE => 0.0,
         // as deep as any motion may have brought it

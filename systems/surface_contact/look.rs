@@ -88,12 +88,13 @@ impl Motion {
     }
 
     /// Takes the last step into account: nodes have come nearer by what they went apart in it, at most. Where
-    /// displacements are not what steps make of them (on the way to equilibrium, after a change of the step, where
-    /// somebody else has written them), or many steps have been added up, it is looked where nodes are.
+    /// displacements are not what steps make of them (on the way to equilibrium, in implicit steps, after a change
+    /// of the step, where somebody else has written them), or many steps have been added up, it is looked where
+    /// nodes are.
     pub fn follow<'a, T: Scalar>(&mut self, moving: &impl Moving<'a, T>, clock: &Clock, cpu: &Cpu) {
         let mut steps = Extremes::none();
         let mut as_stepped = self.watched.len() == self.runs.len();
-        as_stepped &= clock.relaxation.is_none() && clock.time_step == self.time_step;
+        as_stepped &= clock.relaxation.is_none() && clock.springs.is_none() && clock.time_step == self.time_step;
         self.time_step = clock.time_step;
         self.watched.resize(self.runs.len(), DVec3::NAN);
         let mut before = self.watched.iter_mut();

@@ -24,7 +24,7 @@ impl SurfaceContacts {
 
     /// How far points that are inside and may be come out in this step (m): what they began with while a wave goes
     /// through the body, what the corners of faces have let in later a hundred times as slowly, since that does work.
-    fn settling(&self, clock: &Clock) -> f64 {
+    pub(super) fn settling(&self, clock: &Clock) -> f64 {
         match clock.relaxation {
             Some(_) => f64::INFINITY,
             None if clock.time() * self.settling < 0.5 * self.edge => self.settling * clock.time_step,
@@ -154,8 +154,8 @@ fn note_touches<T: Scalar>(
     contacts.surface.forces = forces;
 }
 
-/// Adds the forces to the loads.
-fn push<T: Scalar>(contacts: &mut SurfaceContacts, acted_on: &[u32], bodies: &mut [BodySlices<'_, T>]) {
+/// Adds the forces to the loads, and notes them.
+pub(super) fn push<T: Scalar>(contacts: &mut SurfaceContacts, acted_on: &[u32], bodies: &mut [BodySlices<'_, T>]) {
     let Surface { nodes, forces, pressed, .. } = &mut contacts.surface;
     let pushed = acted_on.iter().zip(&*forces).filter(|(_, force)| **force != DVec3::ZERO);
     for (&node, &force) in pushed {

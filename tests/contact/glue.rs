@@ -8,7 +8,7 @@ use sinew::components::{DisplacementIncrement, Precision};
 use sinew::systems::Registry;
 
 /// Two bars of 1 × 1 × 2 cm end to end, of which the upper one is drawn up by 4 mm in a second, slowly at first.
-fn bars(cells: [&str; 2], glue: &str) -> String {
+pub fn bars(cells: [&str; 2], glue: &str) -> String {
     let bar = |cells: &str, more: &str| {
         format!("(mesh: Box(size: (0.01, 0.01, 0.02), cells: {cells}), material: \"m\" {more})")
     };

@@ -9,7 +9,7 @@ use sinew::components::DisplacementIncrement;
 const TISSUE: &str = "\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 20)";
 
 /// A cube of 2 cm (78.48 mN) that lies on a table until forceps close on its upper face.
-const LIFTED: &str =
+pub const LIFTED: &str =
     "(duration: 3, bodies: {\"b\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (3, 3, 3), elements: Hex8), material: \"m\")},
     materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 20)},
     loads: [Gravity(acceleration: (0, 0, -9.81))],

@@ -16,6 +16,8 @@ mod frames;
 mod free_tools;
 mod glue;
 mod grasp;
+mod implicit;
+mod implicit_ties;
 mod ironing;
 mod lost_surfaces;
 mod surfaces;

@@ -7,7 +7,7 @@ use sinew::Simulation;
 use sinew::components::{DisplacementIncrement, Precision};
 
 /// Two cubes of 2 cm, 1 cm apart, and a stitch between the middles of the faces that look at each other.
-fn cubes(low: &str, rest: &str, stitch: &str) -> String {
+pub fn cubes(low: &str, rest: &str, stitch: &str) -> String {
     let cube = |more: &str| format!("(mesh: Box(size: (0.02, 0.02, 0.02), cells: (3, 3, 3)), material: \"m\" {more})");
     format!(
         "(duration: 1, bodies: {{\"low\": {}, \"up\": {}}},

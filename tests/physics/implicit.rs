@@ -352,7 +352,7 @@ fn what_implicit_steps_cannot_do_is_refused_by_name() {
         (
             "Implicit(step: 0.01)",
             "tools: {\"t\": (shape: Sphere(radius: 0.01), at: (0, 0, 1))}, contacts: [Tool(tool: \"t\", body: \"b\")]",
-            "implicit steps cannot take part in contact",
+            "the kinematic law corrects explicit steps, and there are none",
         ),
     ];
     for (solver, more, expected) in cases {

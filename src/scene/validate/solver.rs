@@ -1,12 +1,22 @@
 //! Implicit steps: their numbers, and what of a scene they cannot do.
 
 use super::{Validator, scene, show};
-use crate::scene::schema::{ImplicitScheme, Scene, SearchMethod, Solver, WhenUnstable};
+use crate::scene::schema::{ContactLaw, ImplicitScheme, Scene, SearchMethod, Solver, WhenUnstable};
 
 pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
     if scene_.search().is_some_and(|search| search.method == SearchMethod::Newton) {
         let word = if scene_.is_static() { "analysis" } else { "start" };
-        refused(scene_, "Newton's iterations", &format!("`method: Relaxation` in `{word}`"), validator);
+        let instead = format!("`method: Relaxation` in `{word}`");
+        let lists = [
+            ("contacts", scene_.contacts.len(), "contact, which puts nodes where they may be from step to step"),
+            ("attachments", scene_.attachments.len(), "attachments, which break and hold from step to step"),
+        ];
+        for (list, _, what) in lists.into_iter().filter(|(_, count, _)| *count > 0) {
+            let message = format!("Newton's iterations cannot take part in {what}");
+            let note = format!("leave `{list}` out, or use {instead}");
+            validator.out.error_at(scene(list).index(0), message).note(note);
+        }
+        refused(scene_, "Newton's iterations", &instead, validator);
     }
     let Solver::Implicit { scheme, step, newton, tolerance, budget, .. } = scene_.solver else { return };
     let path = scene("solver");
@@ -45,21 +55,26 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
             .error_at(scene("integration").name("when_unstable"), "implicit steps are stable at any length")
             .note("leave it out: neither masses nor steps nor elements have to change");
     }
+    for (number, _) in scene_.contacts.iter().enumerate().filter(|(_, contact)| contact.law() == ContactLaw::Kinematic)
+    {
+        validator
+            .out
+            .error_at(scene("contacts").index(number), "the kinematic law corrects explicit steps, and there are none")
+            .note("write `law: Penalty(share: 1)`, a spring that implicit steps solve for, or use `solver: Explicit`");
+    }
     refused(scene_, "implicit steps", "`solver: Explicit`", validator);
 }
 
 /// What has a step of its own that knows central differences only.
 fn refused(scene_: &Scene, who: &str, instead: &str, validator: &mut Validator) {
-    let lists = [
-        ("contacts", scene_.contacts.len(), "contact, which puts nodes where they may be from step to step"),
-        ("suction", scene_.suction.len(), "suction, which keeps what was sucked from step to step"),
-        ("attachments", scene_.attachments.len(), "attachments, which break and hold from step to step"),
-    ];
-    for (list, _, what) in lists.into_iter().filter(|(_, count, _)| *count > 0) {
+    if !scene_.suction.is_empty() {
         validator
             .out
-            .error_at(scene(list).index(0), format!("{who} cannot take part in {what}"))
-            .note(format!("leave `{list}` out, or use {instead}"));
+            .error_at(
+                scene("suction").index(0),
+                format!("{who} cannot take part in suction, which keeps what was sucked from step to step"),
+            )
+            .note(format!("leave `suction` out, or use {instead}"));
     }
     for (name, _) in scene_.tools.iter().filter(|(_, tool)| tool.free.is_some()) {
         validator

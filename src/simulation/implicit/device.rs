@@ -10,7 +10,7 @@ use super::conjugate_gradients::{Ended, Solved, Stop};
 use super::formula::Formula;
 use super::preconditioner::Preconditioner;
 use super::sums::Sums;
-use super::trial::{STRAIN, Trial, is_of_forces};
+use super::trial::{STRAIN, Trial};
 use crate::backend::device::Device;
 use crate::backend::kernel::{BufferId, Kernel, KernelId, Uniform};
 use crate::error::Error;
@@ -145,7 +145,7 @@ impl OnDevice {
     /// Takes iterations until one of the two ends it.
     fn iterate(&self, trial: &mut Trial<'_>, most: u64) -> Result<Solved, Error> {
         let record = trial.record();
-        let forces = trial.kernels(is_of_forces);
+        let forces = trial.kernels(|pass| pass.finds_forces);
         let iteration = [&self.ahead[..], &forces, &self.after].concat();
         run(trial.world, &self.begin, &record, 1)?;
         let mut taken = 0;

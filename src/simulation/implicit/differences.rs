@@ -22,7 +22,7 @@ pub(super) fn steps_to<'s>(
     })
 }
 
-/// c (F(w + ε p) − F(w))/ε.
+/// c (F(w + ε p) − F(w))/ε, and the part of the springs that touch at w.
 pub(super) fn difference(
     trial: &mut Trial<'_>,
     (formula, h, motion): (&Formula, f64, &Motion),
@@ -41,10 +41,11 @@ pub(super) fn difference(
         elsewhere[axis] = w[axis] + reach * p[axis];
     }
     let at = steps_to(formula, h, motion, elsewhere, steps, trial);
-    trial.forces(elsewhere, at, image)?;
+    trial.forces_without_springs(elsewhere, at, image)?;
     let factor = formula.stiffness() / reach;
     for axis in 0..w.len() {
         image[axis] = factor * (image[axis] - net[axis]);
     }
+    trial.springs.add_product(formula.stiffness(), formula.step(), p, image);
     Ok(())
 }

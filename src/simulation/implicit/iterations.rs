@@ -10,7 +10,7 @@ use super::newton::{Newton, Settings, Workspace};
 use super::preconditioner::{Operator, Preconditioner, of_name};
 use super::report::ImplicitSteps;
 use super::sums::Sums;
-use super::trial::{Trial, is_of_forces};
+use super::trial::Trial;
 use crate::backend::cpu::Cpu;
 use crate::components::Clock;
 use crate::scene::schema;
@@ -100,7 +100,7 @@ impl Iterations {
             stiffness: formula.stiffness(),
         });
         let (made_of, mut held) = preconditioner.holds();
-        let forces = passes.iter().filter(|pass| is_of_forces(pass.phase)).map(|pass| pass.name.as_str());
+        let forces = passes.iter().filter(|pass| pass.finds_forces).map(|pass| pass.name.as_str());
         let forces: Vec<&str> = forces.collect();
         let mut of = vec![
             first,

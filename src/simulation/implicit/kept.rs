@@ -4,8 +4,14 @@ use crate::components::*;
 use bevy_ecs::prelude::*;
 
 /// Columns that the search for a step writes over.
-const WRITTEN: [&str; 5] =
-    [Displacement::NAME, DisplacementIncrement::NAME, InternalForce::NAME, ExternalForce::NAME, ViscousMemory::NAME];
+const WRITTEN: [&str; 6] = [
+    Displacement::NAME,
+    DisplacementIncrement::NAME,
+    InternalForce::NAME,
+    ExternalForce::NAME,
+    ViscousMemory::NAME,
+    ToolHold::NAME,
+];
 
 /// These columns as they were at the beginning of the step.
 #[derive(Default)]

@@ -1,6 +1,8 @@
 //! Newton's iterations of a step: inexact solves (Eisenstat & Walker 1996), a line search on the work of the residual
 //! along the way (Matthies & Strang 1979).
 
+mod search;
+
 use super::axes::Motion;
 use super::conjugate_gradients::{Ended, Solved, Stop, Vectors, solve};
 use super::device::{self, LinearSystem, OnDevice};
@@ -15,11 +17,8 @@ use crate::error::Error;
 
 /// Of a linear system the residual that is left, at most and at least.
 const FORCING: [f64; 2] = [0.1, 0.01];
-/// What the work of the residual along a direction must fall to where all of the direction is gone; of a share of it,
-/// it is asked for that share of the fall, or directions along which work falls as the tangent says were refused.
+/// What the work of the residual along a direction must fall to where all of the direction is gone.
 const DESCENT: f64 = 0.9;
-/// How often a direction is halved.
-const MOST_HALVINGS: u32 = 12;
 /// Newton iterations after which a step may end where rounding keeps it from the tolerance.
 const ROUNDING_FROM: u32 = 3;
 /// Newton iterations at least in which prescribed motion may arrive, where the line search holds it back.
@@ -92,7 +91,7 @@ pub(super) struct Workspace {
     p: Vec<f64>,
     from: Vec<f64>,
     elsewhere: Vec<f64>,
-    steps: Vec<f64>,
+    pub steps: Vec<f64>,
     /// What a step comes to: h v (m), and the acceleration (m/s²).
     pub step: Vec<f64>,
     pub acceleration: Vec<f64>,
@@ -153,7 +152,7 @@ impl Newton<'_, '_> {
                 floor = self.rounding()?;
             }
             let enough = enough.max(floor);
-            let moves = self.space.to_go.iter().any(|&left| left != 0.0);
+            let moves = self.moves();
             // the linearised step takes its one solve wherever it begins
             let taken = self.settings.newton > 1 || iterations > 0 || size == 0.0;
             let solved = taken && size <= enough && !moves;
@@ -186,6 +185,11 @@ impl Newton<'_, '_> {
         }
     }
 
+    /// Whether held axes have not arrived yet.
+    fn moves(&self) -> bool {
+        self.space.to_go.iter().any(|&left| left != 0.0)
+    }
+
     /// Passes that the step may still take.
     fn left(&self) -> u64 {
         self.settings.budget.map_or(u64::MAX, |budget| budget.saturating_sub(self.trial.count))
@@ -202,7 +206,9 @@ impl Newton<'_, '_> {
     /// g at w, from the forces there; its norm (N).
     fn residual(&mut self) -> f64 {
         let Workspace { w, net, g, constant, inertia, .. } = &mut *self.space;
-        self.motion.fill_residual((self.settings.formula.stiffness(), self.h), (w, net), (constant, inertia), g);
+        let stiffness = self.settings.formula.stiffness();
+        self.motion.fill_residual((stiffness, self.h), (w, net), (constant, inertia), g);
+        self.trial.springs.press(stiffness, &self.motion.free, g);
         self.sums.norm(g)
     }
 
@@ -348,38 +354,5 @@ impl Newton<'_, '_> {
             inertia: &self.space.inertia,
             stiffness: self.settings.formula.stiffness(),
         });
-    }
-
-    /// Goes along p as far as the residual does less work along it, and where bodies give way along it as far as it
-    /// leads downhill. `size` becomes the norm of the new residual.
-    fn search(&mut self, way: Way, size: &mut f64, enough: f64) -> Result<Tried, Lost> {
-        self.space.from.copy_from_slice(&self.space.w);
-        let mut share = 1.0;
-        for _ in 0..=MOST_HALVINGS {
-            let Workspace { w, from, p, to_go, .. } = &mut *self.space;
-            for axis in 0..w.len() {
-                w[axis] = from[axis] + share * (p[axis] + to_go[axis]);
-            }
-            let tried = self.forces_at_w()?;
-            if tried.sound {
-                let now = self.residual();
-                let work = self.sums.dot(&self.space.p, &self.space.g);
-                let size_of_work = if way.gives_way { work.max(0.0) } else { work.abs() };
-                let most = (1.0 - (1.0 - DESCENT) * share) * way.along.abs();
-                let descends = size_of_work <= most || self.settings.newton == 1 || now <= enough;
-                if now.is_finite() && descends {
-                    self.space.to_go.iter_mut().for_each(|left| *left *= 1.0 - share);
-                    *size = now;
-                    return Ok(tried);
-                }
-            }
-            self.report.halvings += 1;
-            share *= 0.5;
-        }
-        let Workspace { w, from, .. } = &mut *self.space;
-        w.copy_from_slice(from);
-        Err(Lost::Because(format!(
-            "no descent after {MOST_HALVINGS} halvings of a Newton step, at a residual of {size:.3e} N"
-        )))
     }
 }

@@ -9,6 +9,7 @@ use super::free_motions::{FreeMotion, free_motions};
 use super::iterations::{Iterations, OfForces};
 use super::newton::{Found, Lost, Newton, Settings, Workspace};
 use super::report::ImplicitSteps;
+use super::springs::Springs;
 use super::trial::Trial;
 use crate::components::*;
 use crate::error::Error;
@@ -26,6 +27,7 @@ const UNBALANCED: f64 = 1e-5;
 pub(in crate::simulation) struct Statics {
     axes: Axes,
     iterations: Iterations,
+    springs: Springs,
 }
 
 /// What came of it.
@@ -55,7 +57,7 @@ impl Statics {
         let axes = Axes::of(world);
         let settings = Settings { formula: Formula::of_rest(), newton: MOST_ITERATIONS, tolerance, budget: None };
         let iterations = Iterations::new(settings, schema::Preconditioner::TwoLevel, &axes, world);
-        Self { axes, iterations }
+        Self { axes, iterations, springs: Springs::default() }
     }
 
     /// What they took.
@@ -101,8 +103,8 @@ impl Statics {
     fn find(&mut self, world: &mut World, passes: &mut [ScheduledPass], before: u64) -> Result<Attempt, Lost> {
         let clock = *world.resource::<Clock>();
         let Some(relaxation) = clock.relaxation else { return Ok(Attempt::NotFound) };
-        let Self { axes, iterations } = self;
-        let mut trial = Trial { world, passes, axes, step: clock.step, count: 0, elsewhere: false };
+        let Self { axes, iterations, springs } = self;
+        let mut trial = Trial { world, passes, axes, springs, step: clock.step, count: 0, elsewhere: false };
         let Iterations { motion, space, .. } = &mut *iterations;
         axes.read(trial.world, motion);
         trial.world.resource_mut::<Signals>().approach(relaxation.end, [1.0, 1.0]);

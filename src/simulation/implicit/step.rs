@@ -4,11 +4,14 @@ use super::super::ScheduledPass;
 use super::super::explain::SolverInUse;
 use super::axes::{Axes, Motion};
 use super::device::{bring_state, send_state};
+use super::differences::steps_to;
 use super::formula::Formula;
+use super::grasped::Grasped;
 use super::iterations::{Iterations, OfForces};
 use super::kept::Kept;
 use super::newton::{Found, Lost, Settings, Workspace};
 use super::report::ImplicitSteps;
+use super::springs::Springs;
 use super::trial::Trial;
 use super::work::Works;
 use crate::components::*;
@@ -25,6 +28,7 @@ const WARNED: f64 = 0.5;
 pub(in crate::simulation) struct Implicit {
     axes: Axes,
     iterations: Iterations,
+    springs: Springs,
     works: Option<Works>,
 }
 
@@ -40,7 +44,8 @@ impl Implicit {
         let axes = Axes::of(world);
         let settings = Settings { formula: Formula::of(scheme), newton, tolerance, budget };
         let iterations = Iterations::new(settings, preconditioner, &axes, world);
-        Some(Self { axes, iterations, works: scene.output.energies_every.map(|_| Works::default()) })
+        let works = scene.output.energies_every.map(|_| Works::default());
+        Some(Self { axes, iterations, springs: Springs::default(), works })
     }
 
     /// What they took.
@@ -91,9 +96,9 @@ impl Implicit {
 
     /// Finds the end of the step, and takes it. Gives the share of the residual that is left.
     fn find(&mut self, world: &mut World, passes: &mut [ScheduledPass], clock: &Clock) -> Result<f64, Lost> {
-        let Self { axes, iterations, works } = self;
+        let Self { axes, iterations, springs, works } = self;
         let (h, formula) = (clock.time_step, iterations.settings.formula);
-        let mut trial = Trial { world, passes, axes, step: clock.step, count: 0, elsewhere: false };
+        let mut trial = Trial { world, passes, axes, springs, step: clock.step, count: 0, elsewhere: false };
         let Iterations { motion, space, .. } = &mut *iterations;
         axes.read(trial.world, motion);
         if clock.step == 0 {
@@ -102,11 +107,13 @@ impl Implicit {
         let times = [clock.time_at(clock.step), clock.time_at(clock.step + 1)];
         trial.world.resource_mut::<Signals>().evaluate((times[1], times[1]), times);
         trial.boundary()?;
+        Springs::seek(trial.world)?;
         if let Some(works) = works {
             works.begin(trial.world, axes);
         }
         trial.net(&mut space.net);
         held_axes(trial.world, axes, motion, &mut space.to_go);
+        let grasped = Grasped::hold(trial.world, axes, motion, &mut space.to_go);
         for axis in 0..space.w.len() {
             (space.inertia[axis], space.constant[axis]) = motion.equation(&formula, h, axis, space.net[axis]);
             space.w[axis] = motion.predicted(axis, h);
@@ -119,7 +126,8 @@ impl Implicit {
         let mut trial = newton.trial;
         if left.is_ok() {
             let Iterations { motion, space, kept, .. } = &mut *iterations;
-            keep_forces(&mut trial, kept, space)?;
+            keep_forces(&mut trial, (&formula, h, motion), kept, space)?;
+            grasped.note(trial.world, (&formula, h, motion), space);
             let Workspace { w, step, acceleration, .. } = space;
             for axis in 0..w.len() {
                 let (velocity, of_axis) = motion.arrival(&formula, axis, h, w[axis]);
@@ -165,15 +173,23 @@ pub(super) fn held_axes(world: &World, axes: &Axes, motion: &Motion, to_go: &mut
 }
 
 /// Takes the forces at the end once more where something is kept of them: memories, elements that were turned inside
-/// out and may be.
-fn keep_forces(trial: &mut Trial<'_>, kept: &Kept, space: &mut Workspace) -> Result<(), Error> {
+/// out and may be, what touches.
+fn keep_forces(
+    trial: &mut Trial<'_>,
+    (formula, h, motion): (&Formula, f64, &Motion),
+    kept: &Kept,
+    space: &mut Workspace,
+) -> Result<(), Error> {
     let world = &mut *trial.world;
     let notes = world.query::<&OnInversion>().iter(world).any(|policy| policy.0 != Inversion::Stop);
-    if kept.has_memories() || notes || trial.elsewhere {
+    let touches = world.resource::<Clock>().springs.is_some();
+    if kept.has_memories() || notes || touches || trial.elsewhere {
         set_trying(trial.world, false);
         // forces that were no numbers are in them
         kept.put_back(trial.world, |name| name == ViscousMemory::NAME);
-        trial.forces(&space.w, None, &mut space.net)?;
+        let Workspace { w, steps, net, .. } = space;
+        let at = steps_to(formula, h, motion, w, steps, trial);
+        trial.noted_forces(w, at, net)?;
     }
     Ok(())
 }

@@ -2,6 +2,7 @@
 
 use super::super::ScheduledPass;
 use super::axes::Axes;
+use super::springs::Springs;
 use crate::components::*;
 use crate::error::Error;
 use crate::systems::Phase;
@@ -16,6 +17,8 @@ pub(super) struct Trial<'a> {
     pub world: &'a mut World,
     pub passes: &'a mut [ScheduledPass],
     pub axes: &'a Axes,
+    /// The springs that touched where forces were tried last, which the columns of forces do not have.
+    pub springs: &'a mut Springs,
     /// The step.
     pub step: u64,
     /// How often forces were taken.
@@ -36,9 +39,9 @@ pub(super) struct Tried {
 }
 
 impl Trial<'_> {
-    /// Runs the systems of some phases.
-    fn run(&mut self, phases: impl Fn(Phase) -> bool) -> Result<(), Error> {
-        for pass in self.passes.iter_mut().filter(|pass| phases(pass.phase)) {
+    /// Runs some passes.
+    fn run(&mut self, which: impl Fn(&ScheduledPass) -> bool) -> Result<(), Error> {
+        for pass in self.passes.iter_mut().filter(|pass| which(pass)) {
             pass.run_on_host(self.step, self.world)?;
         }
         Ok(())
@@ -48,7 +51,7 @@ impl Trial<'_> {
     pub fn boundary(&mut self) -> Result<(), Error> {
         match self.is_on_device() {
             true => self.boundary_on_device(),
-            false => self.run(|phase| phase == Phase::Boundary),
+            false => self.run(|pass| pass.phase == Phase::Boundary && !pass.finds_forces),
         }
     }
 
@@ -58,13 +61,37 @@ impl Trial<'_> {
             return false;
         }
         let name = DisplacementIncrement::NAME;
-        let forces = self.passes.iter().filter(|pass| is_of_forces(pass.phase));
+        let forces = self.passes.iter().filter(|pass| pass.finds_forces);
         forces.into_iter().any(|pass| pass.reads(name))
     }
 
     /// The forces F − R (N) at displacements (m), and with `steps` at velocities (as displacements of a step), kept in
-    /// the columns of forces.
+    /// the columns of forces, and the springs that touch there.
     pub fn forces(&mut self, u: &[f64], steps: Option<&[f64]>, net: &mut [f64]) -> Result<bool, Error> {
+        let sound = self.find((u, steps), SpringForces::Tried, net)?;
+        self.springs.find(self.world, self.axes);
+        Ok(sound)
+    }
+
+    /// The same without what touches, whose springs stay those of before.
+    pub fn forces_without_springs(&mut self, u: &[f64], steps: Option<&[f64]>, net: &mut [f64]) -> Result<bool, Error> {
+        self.find((u, steps), SpringForces::Omitted, net)
+    }
+
+    /// The same with what touches among the loads, which is noted.
+    pub fn noted_forces(&mut self, u: &[f64], steps: Option<&[f64]>, net: &mut [f64]) -> Result<bool, Error> {
+        self.find((u, steps), SpringForces::Noted, net)
+    }
+
+    fn find(
+        &mut self,
+        (u, steps): (&[f64], Option<&[f64]>),
+        touching: SpringForces,
+        net: &mut [f64],
+    ) -> Result<bool, Error> {
+        if let Some(springs) = &mut self.world.resource_mut::<Clock>().springs {
+            springs.forces = touching;
+        }
         self.count += 1;
         self.elsewhere = true;
         self.axes.displace(self.world, u);
@@ -76,7 +103,7 @@ impl Trial<'_> {
         }
         match self.is_on_device() {
             true => self.forces_on_device(steps.is_some())?,
-            false => self.run(is_of_forces)?,
+            false => self.run(|pass| pass.finds_forces)?,
         }
         self.net(net);
         Ok(!self.world.get_resource::<TrialForces>().is_some_and(|trial| trial.inverted))
@@ -97,9 +124,9 @@ impl Trial<'_> {
         }
     }
 
-    /// What the columns of forces come to.
+    /// What the columns of forces and the springs come to.
     pub fn judge(&self, sound: bool, free: &[bool], held: &[bool], net: &[f64]) -> Tried {
-        let mut tried = Tried::default();
+        let mut tried = Tried { loads: self.springs.square(), ..Tried::default() };
         let mut all = 0.0;
         for (body, range) in self.axes.each() {
             let Some(external) = self.world.get::<ExternalForce>(body) else { continue };
@@ -127,9 +154,4 @@ impl Trial<'_> {
         };
         if strain > 0.0 { of_precision / strain } else { 0.0 }
     }
-}
-
-/// Whether a phase finds forces.
-pub(in crate::simulation) fn is_of_forces(phase: Phase) -> bool {
-    phase > Phase::Boundary && phase < Phase::Integrate
 }

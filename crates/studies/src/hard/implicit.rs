@@ -36,7 +36,8 @@ pub const IMPACT: Implicitly = Implicitly::By("solver=Implicit(step: 1e-5, toler
 pub const NEWTON: Implicitly = Implicitly::By("analysis=Static(method: Newton)");
 
 /// What a scene of contact says.
-pub const CONTACT: Implicitly = Implicitly::NotMeant("implicit steps take no part in contact");
+pub const CONTACT: Implicitly =
+    Implicitly::NotMeant("its contact is kinematic, a correction of explicit steps that implicit ones do not have");
 
 /// What a system of the case's own writes on the host.
 pub const ON_HOST: Implicitly =

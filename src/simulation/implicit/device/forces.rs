@@ -1,6 +1,7 @@
 //! Forces at trial displacements on a device, and what travels for them.
 
-use super::super::trial::{Trial, is_of_forces};
+use super::super::super::ScheduledPass;
+use super::super::trial::Trial;
 use crate::backend::device::{Device, bring_to_host, overwrite_on_device};
 use crate::backend::kernel::KernelId;
 use crate::backend::step::trial_record;
@@ -48,9 +49,9 @@ impl Trial<'_> {
         self.world.contains_resource::<Device>()
     }
 
-    /// The kernels of some phases.
-    pub(super) fn kernels(&self, phases: impl Fn(Phase) -> bool) -> Vec<KernelId> {
-        self.passes.iter().filter(|pass| phases(pass.phase)).flat_map(|pass| pass.kernels()).copied().collect()
+    /// The kernels of some passes.
+    pub(super) fn kernels(&self, which: impl Fn(&ScheduledPass) -> bool) -> Vec<KernelId> {
+        self.passes.iter().filter(|pass| which(pass)).flat_map(|pass| pass.kernels()).copied().collect()
     }
 
     /// The record of forces at the end of the step.
@@ -59,9 +60,9 @@ impl Trial<'_> {
         trial_record(self.world.resource::<Clock>(), self.world.resource::<Signals>(), trying)
     }
 
-    /// Runs the kernels of some phases.
-    fn run_kernels(&mut self, phases: impl Fn(Phase) -> bool) -> Result<(), Error> {
-        let (kernels, record) = (self.kernels(phases), self.record());
+    /// Runs the kernels of some passes.
+    fn run_kernels(&mut self, which: impl Fn(&ScheduledPass) -> bool) -> Result<(), Error> {
+        let (kernels, record) = (self.kernels(which), self.record());
         if kernels.is_empty() {
             return Ok(());
         }
@@ -70,7 +71,7 @@ impl Trial<'_> {
 
     /// Says where held axes go.
     pub fn boundary_on_device(&mut self) -> Result<(), Error> {
-        self.run_kernels(|phase| phase == Phase::Boundary)?;
+        self.run_kernels(|pass| pass.phase == Phase::Boundary)?;
         bring_to_host(self.world, |_, name| name == DisplacementIncrement::NAME)
     }
 
@@ -81,7 +82,7 @@ impl Trial<'_> {
         let noted = if trying { forget_inverted(self.world) } else { Vec::new() };
         let moves = |name| name == Displacement::NAME || with_velocities && name == DisplacementIncrement::NAME;
         overwrite_on_device(self.world, |_, name| moves(name) || name == FirstInverted::NAME)?;
-        self.run_kernels(is_of_forces)?;
+        self.run_kernels(|pass| pass.finds_forces)?;
         let found = [InternalForce::NAME, ExternalForce::NAME, FirstInverted::NAME];
         bring_to_host(self.world, |_, name| found.contains(&name))?;
         if trying {

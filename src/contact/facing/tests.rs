@@ -1,0 +1,92 @@
+#![allow(clippy::expect_used)]
+
+use super::*;
+
+/// What a point faces, with the normals of all triangles found for it.
+fn faced(surfaces: &Surfaces, places: &[DVec3], point: &Point, triangles: &[u32], reach: impl Fn(u32) -> f64) -> Faced {
+    let all = 0..surfaces.triangles.len() as u32;
+    let normals: Vec<DVec3> = all.map(|triangle| surfaces.normal(places, triangle)).collect();
+    let distances = vec![0.0; triangles.len()];
+    let listed = Listed { triangles, distances: &distances, nearer: 0.0, farthest: 1.0 };
+    let now = Placed { places, normals: &normals };
+    let mut short = Shortlist::UNKNOWN;
+    let stays = Stays { moved: 1e-3, reach: 1e-3 };
+    let found = surfaces.faced(now, point, listed, (&reach, 1.0), (&mut short, stays));
+    // what the shortlist leaves out changes nothing
+    assert_eq!(surfaces.faced(now, point, listed, (&reach, 1.0), (&mut short, stays)), found);
+    found
+}
+
+/// A flat square of two triangles, normal up, and a point above it.
+fn square(height: f64) -> (Surfaces, Vec<DVec3>) {
+    let places = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0), (0.5, 0.5, height)];
+    let triangles = vec![[0, 1, 2], [0, 2, 3]];
+    (Surfaces::new(5, triangles, vec![0; 2], vec![0.5; 2]), places.map(DVec3::from).to_vec())
+}
+
+#[test]
+fn a_place_on_the_side_of_two_faces_is_as_far_from_both() {
+    for height in [0.1, 1e-5, 0.0, -1e-5, -0.1] {
+        let (surfaces, places) = square(height);
+        let faced = faced(&surfaces, &places, &Point::node(1, 4), &[0, 1], |_| 0.2);
+        let first = faced.first.expect("it faces them");
+        assert!((first.gap - height).abs() < 1e-15 && (first.normal - DVec3::Z).length() < 1e-12, "{first:?}");
+        assert_eq!((first.triangle, faced.second), (0, None));
+    }
+}
+
+/// Of a strip the second half is not in any list: still it is seen that it is nearer.
+#[test]
+fn where_the_surface_goes_on_its_other_parts_are_not_faced() {
+    let corners = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (0.0, 1.0), (1.0, 1.0), (2.0, 1.0)];
+    let mut places: Vec<DVec3> = corners.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
+    places.push(DVec3::ZERO);
+    let triangles = vec![[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]];
+    let surfaces = Surfaces::new(7, triangles, vec![0; 4], vec![0.5; 4]);
+    for place in [(1.3, 0.5, 0.0), (1.3, 0.5, 0.1), (1.1, 0.0, -0.2), (1.4, 1.0, 1e-9), (1.4, 1.0, -1e-9)] {
+        places[6] = place.into();
+        let faced = |triangles: &[u32]| faced(&surfaces, &places, &Point::node(1, 6), triangles, |_| 1.0).first;
+        assert_eq!(faced(&[0, 1]), None, "{place:?}");
+        assert!((faced(&[0, 1, 2, 3]).expect("it faces one").gap - place.2).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn farther_than_the_reach_or_deeper_than_the_inside_is_nothing() {
+    for (height, there) in [(0.21, false), (0.19, true), (-0.49, true), (-0.51, false)] {
+        let (surfaces, places) = square(height);
+        let faced = faced(&surfaces, &places, &Point::node(1, 4), &[0, 1], |_| 0.2);
+        assert_eq!(faced.first.is_some(), there, "{height}");
+    }
+}
+
+/// A floor and a wall at its end x = 0, up from it or down, and a point of a face that is a little or not at all
+/// inside both.
+#[test]
+fn a_wall_that_rises_is_another_face_and_one_that_falls_off_is_not() {
+    for (rises, end) in [(true, 1.0), (false, -1.0)] {
+        for height in [-1e-4, -1e-9, 0.0, 1e-9] {
+            let floor = [(0.0, -1.0, 0.0), (1.0, -1.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)];
+            let wall = [(0.0, -1.0, end), (0.0, 1.0, end)];
+            // it looks straight down
+            let face = [(1e-9, 0.1, height), (1e-9, 1.1, height), (1.0, 0.1, height)];
+            let places: Vec<DVec3> = floor.into_iter().chain(wall).chain(face).map(DVec3::from).collect();
+            // out of the wall is +x where it rises, −x where it falls off
+            let triangles = vec![[0, 1, 2], [0, 2, 3], [0, 3, 5], [0, 5, 4], [6, 7, 8]];
+            let surfaces = Surfaces::new(9, triangles, vec![0, 0, 0, 0, 1], vec![0.5; 5]);
+            let point = Point { triangle: Some(4), ..Point::node(1, 6) };
+            let faced = faced(&surfaces, &places, &point, &[0, 1, 2, 3], |_| 0.2);
+            assert!(faced.first.is_some(), "{rises}, {height}");
+            assert_eq!(faced.second.is_some(), rises, "{rises}, {height}: {faced:?}");
+        }
+    }
+}
+
+#[test]
+fn triangles_without_area_are_never_faced() {
+    let places: Vec<DVec3> =
+        [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (2.0, 0.0, 0.0), (1.0, 0.0, 0.1)].map(DVec3::from).to_vec();
+    let surfaces = Surfaces::new(4, vec![[0, 1, 2], [0, 0, 0]], vec![0; 2], vec![0.5; 2]);
+    let faced = faced(&surfaces, &places, &Point::node(1, 3), &[0, 1], |_| 1.0);
+    assert_eq!(faced.first, None);
+}

@@ -1,0 +1,46 @@
+//! Axes that closed tools hold: held as if they were told where to go.
+
+use super::axes::{Axes, Motion};
+use super::formula::Formula;
+use super::newton::Workspace;
+use crate::systems::{HeldNode, held_in_step, note_held};
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// Nodes that tools hold in a step, with the first of their axes.
+pub(super) struct Grasped(Vec<(HeldNode, usize, [bool; 3])>);
+
+impl Grasped {
+    /// Holds the free axes of nodes that closed tools hold, and says how far they have to go (m).
+    pub fn hold(world: &mut World, axes: &Axes, motion: &mut Motion, to_go: &mut [f64]) -> Self {
+        let mut all = Vec::new();
+        for node in held_in_step(world) {
+            let Some((_, range)) = axes.each().find(|(body, _)| *body == node.body) else { continue };
+            let first = range.start + 3 * node.row;
+            let mut own = [false; 3];
+            for (i, to) in node.displacement.to_array().into_iter().enumerate() {
+                let axis = first + i;
+                own[i] = motion.free[axis];
+                if own[i] {
+                    (motion.free[axis], motion.held[axis]) = (false, true);
+                    to_go[axis] = to - motion.u[axis];
+                }
+            }
+            all.push((node, first, own));
+        }
+        Self(all)
+    }
+
+    /// Notes the forces of tools at the end of a step of h (s): what balances forces, damping and inertia there.
+    pub fn note(&self, world: &mut World, (formula, h, motion): (&Formula, f64, &Motion), space: &Workspace) {
+        for (node, first, own) in &self.0 {
+            let of_axis = |i: usize| {
+                let axis = first + i;
+                let velocity = motion.arrival(formula, axis, h, space.w[axis]).0;
+                let inertial = motion.mass[axis] * (velocity - motion.v[axis]) / h + motion.damping[axis] * velocity;
+                if own[i] { space.net[axis] + inertial } else { 0.0 }
+            };
+            note_held(world, node, DVec3::from_array([0, 1, 2].map(of_axis)));
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! The line search: how far Newton's iterations go along a direction.
+
+use super::super::trial::Tried;
+use super::{DESCENT, Lost, Newton, Way, Workspace};
+use crate::components::Clock;
+
+/// How often a way is halved.
+const MOST_HALVINGS: u32 = 12;
+/// How often it is looked along a way where the work is known to change its sign: two looks halve what is left, and
+/// springs a million times as stiff as the rest are found within 2⁻²⁰ of it.
+const MOST_LOOKS: u32 = 42;
+/// What the work of the residual must fall to where it has been seen to change its sign along a way.
+const FOUND: f64 = 0.5;
+
+/// Where along a way the work of the residual is nothing: it has one sign at its nearer end and the other at its
+/// farther one, or is no number there. Where springs begin to touch, or let go, it bends, and halving from the far end
+/// comes down to where they do not touch yet; the next iteration would go the same way. Turns of regula falsi
+/// (Illinois: of an end that stays the work is halved; Dowell & Jarratt 1971) and of bisection, so that it ends
+/// whatever the bend.
+#[derive(Clone, Copy, Debug)]
+struct Bracket {
+    /// How far, and the work there (J).
+    near: [f64; 2],
+    far: Option<[f64; 2]>,
+    bisects: bool,
+}
+
+impl Bracket {
+    /// Of a way with such a work at its beginning (J).
+    fn from(work: f64) -> Self {
+        Self { near: [0.0, work], far: None, bisects: true }
+    }
+
+    /// Whether the work is known to change its sign, and not only to end somewhere.
+    fn crosses(&self) -> bool {
+        self.far.is_some_and(|[_, work]| work.is_finite())
+    }
+
+    /// Where to look next, after a look there.
+    fn next(&mut self, share: f64, work: f64) -> f64 {
+        if work * self.near[1] > 0.0 {
+            // it stays: what is at the other end counts for less
+            self.far = self.far.map(|[share, work]| [share, 0.5 * work]);
+            // more of the same sign is no nearer to the end
+            match self.far {
+                Some(_) => self.near = [share, work],
+                None => return 0.5 * share,
+            }
+        } else {
+            if self.far.is_some() {
+                self.near[1] *= 0.5;
+            }
+            self.far = Some([share, work]);
+        }
+        let ([near, less], [far, more]) = (self.near, self.far.unwrap_or([share, work]));
+        self.bisects = !self.bisects;
+        let crossing = near + (far - near) * less / (less - more);
+        if self.bisects || !(crossing > near && crossing < far) { 0.5 * (near + far) } else { crossing }
+    }
+}
+
+impl Newton<'_, '_> {
+    /// Goes along p as far as the residual does less work along it, and where bodies give way along it as far as it
+    /// leads downhill. `size` becomes the norm of the new residual.
+    pub(super) fn search(&mut self, way: Way, size: &mut f64, enough: f64) -> Result<Tried, Lost> {
+        self.space.from.copy_from_slice(&self.space.w);
+        let begins = self.sums.dot(&self.space.p, &self.space.g);
+        let touches = self.trial.world.resource::<Clock>().springs.is_some();
+        let moves = self.moves();
+        let (mut share, mut bracket) = (1.0, Bracket::from(begins));
+        for look in 0..=MOST_LOOKS {
+            if look > MOST_HALVINGS && !bracket.crosses() {
+                break;
+            }
+            let Workspace { w, from, p, to_go, .. } = &mut *self.space;
+            for axis in 0..w.len() {
+                w[axis] = from[axis] + share * (p[axis] + to_go[axis]);
+            }
+            let tried = self.forces_at_w()?;
+            let mut work = f64::NAN;
+            if tried.sound {
+                let now = self.residual();
+                work = self.sums.dot(&self.space.p, &self.space.g);
+                let descends = self.descends(&way, (share, work), touches.then_some(&bracket));
+                // of what is moved as told the work may be of either sign: it leads there where less is left
+                let arrives = touches && moves && now <= DESCENT * *size;
+                if now.is_finite() && (descends || arrives || self.settings.newton == 1 || now <= enough) {
+                    self.space.to_go.iter_mut().for_each(|left| *left *= 1.0 - share);
+                    *size = now;
+                    return Ok(tried);
+                }
+            }
+            self.report.halvings += 1;
+            share = if touches { bracket.next(share, work) } else { 0.5 * share };
+        }
+        let Workspace { w, from, .. } = &mut *self.space;
+        w.copy_from_slice(from);
+        Err(Lost::Because(format!(
+            "no descent after {MOST_HALVINGS} halvings of a Newton step, at a residual of {size:.3e} N"
+        )))
+    }
+
+    /// Whether the work of the residual (J) has fallen enough where a share of the way is gone. Of a share, that share
+    /// of the fall is asked for, or directions along which work falls as the tangent says were refused. Where something
+    /// touches, a way counts, too, at whose end the residual still leads on: springs have let go, of which the tangent
+    /// did not know.
+    fn descends(&self, way: &Way, (share, work): (f64, f64), touching: Option<&Bracket>) -> bool {
+        let along = way.along.abs();
+        let size = if way.gives_way { work.max(0.0) } else { work.abs() };
+        let most = if touching.is_some_and(Bracket::crosses) { FOUND } else { 1.0 - (1.0 - DESCENT) * share };
+        let leads_on = |bracket: &Bracket| share == 1.0 && work * bracket.near[1] > 0.0 && size < along;
+        size <= most * along || touching.is_some_and(leads_on)
+    }
+}
+
+#[cfg(test)]
+mod tests;

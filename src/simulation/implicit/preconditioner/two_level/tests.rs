@@ -1,0 +1,130 @@
+#![allow(clippy::unwrap_used)]
+use super::*;
+use crate::backend::cpu::Cpu;
+use crate::simulation::implicit::axes::{Axes, Motion};
+use crate::simulation::implicit::sums::Sums;
+use crate::simulation::tangent::Tangent;
+use crate::{Options, SceneFile, Simulation};
+use glam::DQuat;
+
+/// A block that may slide on the plane z = 0, and one that nothing holds; in f64.
+fn two_blocks() -> Simulation {
+    let scene = "(duration: 1, solver: Implicit(),
+        bodies: {
+            \"sliding\": (mesh: Box(size: (0.1, 0.04, 0.03), cells: (8, 4, 3), elements: Tet4), material: \"m\"),
+            \"free\": (mesh: Box(size: (0.04, 0.03, 0.05), cells: (4, 3, 5), elements: Hex8MeanDilatation), material: \"m\"),
+        },
+        materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))},
+        constraints: [Fixed(body: \"sliding\", on: Plane(normal: (0, 0, 1), at: 0), axes: [Z])])";
+    let scene = SceneFile::from_text("test", scene, std::path::Path::new("."), &[]).unwrap();
+    let options = Options { precision: Precision::F64, threads: 1, ..Options::default() };
+    Simulation::new(&scene, &options).unwrap()
+}
+
+/// What is preconditioned, with its vectors.
+struct Made {
+    axes: Axes,
+    motion: Motion,
+    inertia: Vec<f64>,
+}
+
+impl Made {
+    fn of(simulation: &mut Simulation) -> Self {
+        let axes = Axes::of(&mut simulation.world);
+        let mut motion = Motion::default();
+        axes.read(&simulation.world, &mut motion);
+        let inertia = motion.mass.iter().zip(&motion.free).map(|(m, &free)| if free { m / 1e-4 } else { 0.0 });
+        Self { inertia: inertia.collect(), axes, motion }
+    }
+
+    fn operator<'a>(&'a self, simulation: &'a Simulation) -> Operator<'a> {
+        Operator {
+            world: &simulation.world,
+            bodies: &self.axes.bodies,
+            free: &self.motion.free,
+            inertia: &self.inertia,
+            stiffness: 1.0,
+        }
+    }
+
+    fn vector(&self, seed: f64) -> Vec<f64> {
+        let number = |axis: usize| if self.motion.free[axis] { (seed * (axis as f64 + 1.0)).sin() } else { 0.0 };
+        (0..self.axes.len()).map(number).collect()
+    }
+}
+
+/// Turns all nodes about the z axis, and bends them.
+fn turn(simulation: &mut Simulation, made: &Made, angle: f64, bend: f64) {
+    let rotation = DQuat::from_rotation_z(angle);
+    let mut places = Vec::new();
+    for (body, _) in made.axes.each() {
+        let rest = &simulation.world.get::<RestPosition>(body).unwrap().0;
+        places.extend(rest.iter().flat_map(|x| {
+            let bent = *x + DVec3::new(0.0, bend * x.x * x.x, 0.0);
+            (rotation * bent - *x).to_array()
+        }));
+    }
+    made.axes.displace(&mut simulation.world, &places);
+}
+
+#[test]
+fn it_is_symmetric_and_positive_at_rest_and_turned_where_nodes_slide_and_where_they_are_free() {
+    let mut simulation = two_blocks();
+    let made = Made::of(&mut simulation);
+    let sums = Sums::on(simulation.world.resource::<Cpu>());
+    for (angle, bend) in [(0.0, 0.0), (1.2, 3.0)] {
+        turn(&mut simulation, &made, angle, bend);
+        let mut two_level = TwoLevel::default();
+        two_level.follow(&made.operator(&simulation));
+        assert_eq!(two_level.turned, angle > 0.0);
+        let (p, q) = (made.vector(0.37), made.vector(0.91));
+        let [mut of_p, mut of_q] = [vec![0.0; p.len()], vec![0.0; p.len()]];
+        two_level.apply(&p, &mut of_p);
+        two_level.apply(&q, &mut of_q);
+        let (one, other) = (sums.dot(&q, &of_p), sums.dot(&p, &of_q));
+        let size = (sums.dot(&p, &of_p) * sums.dot(&q, &of_q)).sqrt();
+        assert!((one - other).abs() < 1e-12 * size, "{angle}: {one} and {other} of {size}");
+        for seed in [0.37, 0.91, 1.7, 0.01] {
+            let r = made.vector(seed);
+            let mut z = vec![0.0; r.len()];
+            two_level.apply(&r, &mut z);
+            assert!(sums.dot(&r, &z) > 0.0, "{angle}, {seed}");
+            assert!((0..r.len()).all(|axis| made.motion.free[axis] || z[axis] == 0.0));
+        }
+    }
+}
+
+/// Pᵀ K P of elements' columns against products of the tangent with the motions.
+#[test]
+fn the_coarse_matrix_is_that_of_the_tangent() {
+    let mut simulation = two_blocks();
+    let made = Made::of(&mut simulation);
+    let operator = made.operator(&simulation);
+    let pieces = find_pieces(&operator);
+    assert_eq!(pieces.len(), 2);
+    let mut tangent = Tangent::at_present(&simulation.world, &made.axes.bodies).unwrap();
+    for piece in &pieces {
+        piece.coarse.compare_with(&operator, |motion, image| tangent.times(motion, image));
+    }
+}
+
+/// However a residual is: tᵀ D B r = tᵀ r of the translations t that nothing holds.
+#[test]
+fn what_moves_a_piece_as_a_whole_is_solved_exactly() {
+    let mut simulation = two_blocks();
+    let made = Made::of(&mut simulation);
+    turn(&mut simulation, &made, 0.8, 1.0);
+    let mut two_level = TwoLevel::default();
+    two_level.follow(&made.operator(&simulation));
+    let r = made.vector(0.77);
+    let mut z = vec![0.0; r.len()];
+    two_level.apply(&r, &mut z);
+    let ranges: Vec<_> = made.axes.each().map(|(_, range)| range).collect();
+    for (range, axis, is_free) in [(0, 0, true), (0, 2, false), (1, 0, true), (1, 2, true)] {
+        let own = || ranges[range].clone().skip(axis).step_by(3);
+        let force: f64 = own().map(|i| r[i]).sum();
+        let momentum: f64 = own().map(|i| made.inertia[i] * z[i]).sum();
+        let size: f64 = own().map(|i| r[i].abs()).sum();
+        assert_eq!((force - momentum).abs() < 1e-12 * size, is_free, "{range}, {axis}: {force}, {momentum}");
+    }
+}

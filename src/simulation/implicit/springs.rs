@@ -1,0 +1,61 @@
+//! Springs of contact, and threads, where forces are tried. Which of them touch, and which stick or slide, is that of
+//! the place at which a Newton iteration takes its tangent: a difference of forces would see some let go, others not.
+
+use super::axes::Axes;
+use crate::components::{Clock, SpringForces, TouchingSpring};
+use crate::error::Error;
+use crate::systems::{find_surface_springs, find_thread_springs, find_tool_springs, seek_surfaces};
+use bevy_ecs::prelude::*;
+
+/// Those that touch.
+#[derive(Default)]
+pub(super) struct Springs {
+    touching: Vec<TouchingSpring>,
+}
+
+impl Springs {
+    /// Looks which points of surfaces may touch what in the step that begins.
+    pub fn seek(world: &mut World) -> Result<(), Error> {
+        match &mut world.resource_mut::<Clock>().springs {
+            Some(springs) => springs.forces = SpringForces::Sought,
+            None => return Ok(()),
+        }
+        seek_surfaces(world)
+    }
+
+    /// Finds those that touch where nodes are, after the systems have found forces there.
+    pub fn find(&mut self, world: &mut World, axes: &Axes) {
+        self.touching.clear();
+        if world.resource::<Clock>().springs.is_none() {
+            return;
+        }
+        let first_axis = |body| axes.each().find(|(other, _)| *other == body).map(|(_, range)| range.start);
+        find_surface_springs(world, first_axis, &mut self.touching);
+        find_tool_springs(world, first_axis, &mut self.touching);
+        find_thread_springs(world, first_axis, &mut self.touching);
+    }
+
+    /// Takes a share of their forces from the residual (N) of free axes.
+    pub fn press(&self, share: f64, free: &[bool], residual: &mut [f64]) {
+        for spring in &self.touching {
+            spring.add(spring.force * -share, residual);
+            for axis in spring.parts.iter().flat_map(|&(first, _)| first..first + 3).filter(|&axis| !free[axis]) {
+                residual[axis] = 0.0;
+            }
+        }
+    }
+
+    /// Adds a share of their part of K p (N) to that of the rest, where an axis that moves by 1 m makes a step of so
+    /// many m.
+    pub fn add_product(&self, share: f64, step: f64, p: &[f64], image: &mut [f64]) {
+        for spring in &self.touching {
+            let [of_place, of_step] = spring.slopes;
+            spring.add((of_place + of_step * step) * spring.relative(p) * share, image);
+        }
+    }
+
+    /// The sum of the squares of their forces (N²).
+    pub fn square(&self) -> f64 {
+        self.touching.iter().map(|spring| spring.force.length_squared()).sum()
+    }
+}

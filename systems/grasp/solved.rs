@@ -1,0 +1,92 @@
+//! Grasps in implicit steps: motion that is told, of nodes that closed tools hold.
+
+use super::{HELD, WITHOUT};
+use crate::components::*;
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// A node that a closed tool holds in a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HeldNode {
+    /// Its body, and its row there.
+    pub body: Entity,
+    pub row: usize,
+    /// Its displacement at the end of the step (m).
+    pub displacement: DVec3,
+    /// How far the tool goes there (m).
+    tool_step: DVec3,
+    /// Where its numbers begin in [`ToolHold`].
+    at: usize,
+    /// The force at which it slips out (N), and whether a hand feels it.
+    strength: f64,
+    felt: bool,
+}
+
+/// Which nodes closed tools hold in the step that begins, where signals are those of the step; notes what closes and
+/// opens. Of several tools at a node the last one has it.
+pub(crate) fn held_in_step(world: &mut World) -> Vec<HeldNode> {
+    let Some(values) = world.get_resource::<Signals>().map(|signals| signals.values().to_vec()) else {
+        return Vec::new();
+    };
+    let mut all = Vec::new();
+    let mut bodies = world.query::<(Entity, &Grasps, &mut ToolHold, &RestPosition, &Displacement, &Mass)>();
+    for (body, grasps, mut hold, rest, u, mass) in bodies.iter_mut(world) {
+        for (place, (&row, &mask)) in grasps.rows.iter().zip(&grasps.masks).enumerate() {
+            let row = row as usize;
+            let at_rest = rest.0[row] - grasps.reference;
+            let mut last = None;
+            for (number, grasp) in grasps.grasps.iter().enumerate().filter(|(number, _)| mask >> number & 1 == 1) {
+                let at = grasps.numbers() * place + grasps.numbers_a_grasp() * number;
+                let [pose, change] = [0, 3].map(|slot| Pose::of_slots(&values[grasp.tool.signal + slot..]));
+                let closed = values[grasp.closed][1] > 0.0 && mass.get(row) > 0.0;
+                if !follows(grasp, &mut hold, at, closed, pose.less(&change).inverse(at_rest + u.vector(row))) {
+                    continue;
+                }
+                let of_tool = hold.vector_at(at + 6);
+                let displacement = pose.place(of_tool) - at_rest;
+                let tool_step = change.place(of_tool);
+                let (strength, felt) = (grasp.strength, grasps.felt);
+                last = Some(HeldNode { body, row, displacement, tool_step, at, strength, felt });
+            }
+            all.extend(last);
+        }
+    }
+    all
+}
+
+/// Whether a tool holds a node that is there in its frame (m) at the beginning of the step.
+fn follows(grasp: &Grasp, hold: &mut ToolHold, at: usize, closed: bool, of_tool: DVec3) -> bool {
+    let is_open = hold.get(at + 3) == 0.0;
+    if !closed {
+        if !is_open {
+            hold.set_vector_at(at, DVec3::ZERO);
+            hold.set(at + 3, 0.0);
+        }
+        return false;
+    }
+    if is_open {
+        let within = |reach: f64| grasp.tool.geometry.distance(of_tool).0 <= reach;
+        hold.set(at + 3, if grasp.reach.is_none_or(within) { HELD } else { WITHOUT });
+        hold.set_vector_at(at + 6, of_tool);
+    }
+    hold.get(at + 3) == HELD
+}
+
+/// Notes with which force (N) a tool holds a node at the end of the step. Whom it takes more to hold than it can slips
+/// out in the next one.
+pub(crate) fn note_held(world: &mut World, node: &HeldNode, force: DVec3) {
+    let Some(mut hold) = world.get_mut::<ToolHold>(node.body) else { return };
+    let at = node.at;
+    let mean = 0.5 * (hold.vector_at(at) + force);
+    hold.set_vector_at(at, force);
+    let work = hold.get(at + 4) + mean.dot(node.tool_step);
+    hold.set(at + 4, work);
+    if node.felt {
+        let felt = hold.vector_at(at + HOLD_NUMBERS) + force;
+        hold.set_vector_at(at + HOLD_NUMBERS, felt);
+    }
+    if force.length() > node.strength {
+        hold.set_vector_at(at, DVec3::ZERO);
+        hold.set(at + 3, WITHOUT);
+    }
+}

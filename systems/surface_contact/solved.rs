@@ -1,0 +1,268 @@
+//! Bodies in implicit steps: springs, whose forces are those at the end of the step that is solved for.
+
+use super::body_slices::{BodySlices, set_vector, vector_at};
+use super::faced::Found;
+use super::gather::{Gathered, InStep, Met, allowed};
+use super::meet::{FACES, SLIDES, STICKS, forget, push, release};
+use super::{Meeting, SurfaceContacts};
+use crate::backend::cpu::IntegrationCoefficients;
+use crate::components::*;
+use crate::contact::{Contact, Point};
+use crate::error::Error;
+use crate::math::Scalar;
+use bevy_ecs::prelude::*;
+use bevy_ecs::system::RunSystemOnce;
+use glam::{DMat3, DVec3};
+use smallvec::SmallVec;
+
+/// A point and what it faces in a step. Weights and normal are those at its beginning, as in explicit steps: what a
+/// point faces would change all at once where it comes round a corner, and of some steps there were no end.
+#[derive(Clone, Debug)]
+pub(super) struct Pair {
+    meeting: Meeting,
+    point: u32,
+    /// Whether it is the first face of the point: only there slip is kept.
+    first: bool,
+    normal: DVec3,
+    /// Nodes with signed weights.
+    nodes: SmallVec<[(u32, f64); 8]>,
+    /// How deep it may be inside (m, 0 or negative): as deep as it is found where it was not before.
+    allowed: f64,
+    /// What is missing to the gap (m) beside the places of the nodes along the normal.
+    offset: f64,
+}
+
+impl Pair {
+    /// How far the point is outside of where it may be (m), where nodes are.
+    fn gap(&self, places: &[DVec3]) -> f64 {
+        let along = |&(node, weight): &(u32, f64)| weight * self.normal.dot(places[node as usize]);
+        self.offset + self.nodes.iter().map(along).sum::<f64>()
+    }
+}
+
+/// What is known of a contact besides.
+#[derive(Clone, Debug)]
+pub(super) struct Solved {
+    /// Its normal and tangential force (N) at the end of the last step.
+    was: f64,
+    rubbed: DVec3,
+    /// [`TouchingSpring::slopes`].
+    slopes: [DMat3; 2],
+}
+
+/// Looks which points may touch what in the step that begins, where the clock says that this is wanted.
+pub(crate) fn seek(world: &mut World) -> Result<(), Error> {
+    if !world.contains_resource::<SurfaceContacts>() {
+        return Ok(());
+    }
+    let ran = world.run_system_once(super::surface_contact);
+    ran.unwrap_or_else(|error| Err(Error::Options(format!("surfaces cannot be looked at: {error}"))))
+}
+
+/// The springs that the system has found where nodes were tried. `first_axis` is that of a body.
+pub(crate) fn find(world: &World, first_axis: impl Fn(Entity) -> Option<usize>, found: &mut Vec<TouchingSpring>) {
+    let Some(contacts) = world.get_resource::<SurfaceContacts>() else { return };
+    let (gathered, solved) = (&contacts.surface.gathered, &contacts.surface.solved);
+    let axis_of = |slot: usize| {
+        let (body, row) = contacts.surface.nodes[gathered.acted_on[slot] as usize];
+        Some(first_axis(contacts.bodies[body as usize])? + 3 * row as usize)
+    };
+    for (contact, solved) in gathered.set.contacts.iter().zip(solved) {
+        let parts = contact.parts().filter_map(|(slot, weight)| Some((axis_of(slot)?, weight)));
+        found.push(TouchingSpring { parts: parts.collect(), force: contact.force(), slopes: solved.slopes });
+    }
+}
+
+/// Finds which points may touch what in the step that begins, of what points face.
+pub(super) fn pair<T: Scalar>(contacts: &mut SurfaceContacts, clock: &Clock, bodies: &mut [BodySlices<'_, T>]) {
+    let coefficients = IntegrationCoefficients::<f64>::of(clock);
+    let largest = contacts.surface.motion.largest;
+    let in_step = InStep { largest, settling: contacts.settling(clock), coefficients: &coefficients };
+    let mut pairs = std::mem::take(&mut contacts.surface.pairs);
+    let surface = &contacts.surface;
+    let mut add = |pair: Pair, gap: f64| {
+        let offset = gap - pair.allowed - pair.gap(&surface.places);
+        pairs.push(Pair { offset, ..pair });
+    };
+    for Found { place, faced, .. } in &surface.found {
+        let number = surface.lists.points[*place as usize];
+        let point = &surface.points[number as usize];
+        for (facing, first) in [(&faced.first, true), (&faced.second, false)] {
+            let Some(facing) = facing else { continue };
+            let body = surface.triangles.bodies[facing.triangle as usize];
+            let Some(meeting) = contacts.meeting(point.body, body) else { continue };
+            let (corners, weights) = surface.corners_of(point, facing);
+            let of_face = corners.into_iter().zip(weights).map(|(node, weight)| (node, -weight));
+            let nodes = point.parts().chain(of_face).collect();
+            let (gap, kept) = (contacts.gap(point, facing), contacts.kept(number));
+            let allowed = match (first, &clock.springs) {
+                (true, _) => allowed(bodies[kept.body].kept_mut(kept), gap, &in_step),
+                (false, Some(springs)) => borne(contacts, (point, facing.normal, gap), (&meeting, springs), bodies),
+                (false, None) => 0.0,
+            };
+            let (point, normal) = (number, facing.normal);
+            add(Pair { meeting, point, first, normal, nodes, allowed, offset: 0.0 }, gap);
+        }
+    }
+    // nothing is known of how edges slipped that cross
+    for (pair, crossing) in &surface.crossings.found {
+        let [one, other] = pair.map(|edge| surface.crossings.edges[edge as usize]);
+        let Some(meeting) = contacts.crossing(one.body, other.body) else { continue };
+        let [of_one, of_other] = crossing.weights;
+        let of_other = other.nodes.into_iter().zip(of_other).map(|(node, weight)| (node, -weight));
+        let nodes = one.nodes.into_iter().zip(of_one).chain(of_other).collect();
+        // nodes are the first of the points
+        let pair = Pair {
+            meeting,
+            point: one.nodes[0],
+            first: false,
+            normal: crossing.normal,
+            nodes,
+            allowed: 0.0,
+            offset: 0.0,
+        };
+        add(pair, crossing.gap - meeting.thickness);
+    }
+    contacts.surface.pairs = pairs;
+}
+
+/// How deep a point may be inside of another face (m, 0 or negative), of which nothing is kept of how it got there: as
+/// deep as the force along its normal at the end of the last step does not tell of.
+fn borne<T: Scalar>(
+    contacts: &SurfaceContacts,
+    (point, normal, gap): (&Point, DVec3, f64),
+    (meeting, springs): (&Meeting, &SolvedSprings),
+    bodies: &[BodySlices<'_, T>],
+) -> f64 {
+    let Some(spring) = meeting.spring else { return 0.0 };
+    let (mut mass, mut force) = (0.0, 0.0);
+    for (node, weight) in point.parts() {
+        let (body, row) = contacts.surface.nodes[node as usize];
+        let of_body = &bodies[body as usize];
+        mass += weight * of_body.mass[row as usize].to_f64();
+        force += normal.dot(vector_at(of_body.force, 3 * row as usize));
+    }
+    let stiffness = spring.press(springs, mass, 0.0, [0.0, springs.step]).stiffness;
+    (gap + force.max(0.0) / stiffness).min(0.0)
+}
+
+/// Finds the forces of springs where nodes are. They are added to the loads, and what points carry on is noted, only
+/// where the step is taken.
+pub(super) fn press<T: Scalar>(
+    contacts: &mut SurfaceContacts,
+    (clock, springs): (&Clock, &SolvedSprings),
+    bodies: &mut [BodySlices<'_, T>],
+) {
+    let mut gathered = std::mem::take(&mut contacts.surface.gathered);
+    gathered.clear();
+    let coefficients = IntegrationCoefficients::<f64>::of(clock);
+    let in_step = InStep { largest: 0.0, settling: 0.0, coefficients: &coefficients };
+    let mut solved = std::mem::take(&mut contacts.surface.solved);
+    solved.clear();
+    let pairs = std::mem::take(&mut contacts.surface.pairs);
+    for pair in &pairs {
+        let gap = pair.gap(&contacts.surface.places);
+        if pair.first {
+            gathered.facing.push(pair.point);
+        }
+        // what is no number is told by guards, not lost
+        if gap > 0.0 {
+            continue;
+        }
+        add(contacts, &mut gathered, (pair, gap), (&in_step, springs), bodies, &mut solved);
+    }
+    if springs.forces == SpringForces::Noted {
+        let mut forces = std::mem::take(&mut contacts.surface.forces);
+        forces.clear();
+        forces.resize(gathered.acted_on.len(), DVec3::ZERO);
+        for contact in &gathered.set.contacts {
+            let force = contact.force();
+            contact.parts().for_each(|(slot, weight)| forces[slot] += force * weight);
+        }
+        contacts.surface.forces = forces;
+        release(&mut contacts.surface, bodies);
+        forget(contacts, &gathered.facing, bodies);
+        note(contacts, &gathered, &pairs, &solved, bodies);
+        push(contacts, &gathered.acted_on, bodies);
+    }
+    gathered.acted_on.iter().for_each(|&node| gathered.slots[node as usize] = u32::MAX);
+    (contacts.surface.gathered, contacts.surface.pairs, contacts.surface.solved) = (gathered, pairs, solved);
+}
+
+/// Adds the contact of a pair with such a gap (m), with its force. The mass that a spring presses on is that of the
+/// point.
+fn add<T: Scalar>(
+    contacts: &SurfaceContacts,
+    gathered: &mut Gathered,
+    (pair, gap): (&Pair, f64),
+    (in_step, springs): (&InStep<'_>, &SolvedSprings),
+    bodies: &mut [BodySlices<'_, T>],
+    all: &mut Vec<Solved>,
+) {
+    let &Pair { meeting, point, first, normal, .. } = pair;
+    let met = Met { point, first, gap: gap + pair.allowed };
+    let Some(spring) = meeting.spring else { return };
+    let kept = contacts.kept(met.point);
+    let touch = bodies[kept.body].kept_mut(kept);
+    let (state, before) = (touch[4].to_f64(), touch[5].to_f64() - touch[3].to_f64());
+    let (touched, sticks) = (met.first && state >= STICKS, met.first && state == STICKS);
+    let slip = if touched { vector_at(touch, 0) } else { DVec3::ZERO };
+    let friction = meeting.friction[usize::from(!sticks)];
+    let mut contact = Contact::new((normal, gap), (friction, slip));
+    let mut mass = 0.0;
+    for &(node, weight) in &pair.nodes {
+        let slot = gathered.slot_of(node, (&contacts.surface, in_step), bodies);
+        contact.add(slot, weight);
+        if weight > 0.0 {
+            let (body, row) = contacts.surface.nodes[node as usize];
+            mass += weight * bodies[body as usize].mass[row as usize].to_f64();
+        }
+    }
+    let relative = contact.relative(&gathered.set.earlier);
+    let time = 1.0 / in_step.coefficients.rate;
+    let press = spring.press(springs, mass, gap, [normal.dot(relative), time]);
+    let rubbing = press.rub(normal, contact.along(slip + relative), friction);
+    let slopes = press.with(normal, &rubbing).1;
+    (contact.pressing, contact.rubbing, contact.slides) = (press.pressing, rubbing.force, rubbing.slides);
+    let was = if touched { (-press.stiffness * before).max(0.0) } else { 0.0 };
+    all.push(Solved { was, rubbed: -press.stiffness * contact.along(slip), slopes });
+    // what slides keeps as much elastic slip as its force is of
+    contact.slip = if press.stiffness > 0.0 { -contact.rubbing / press.stiffness } else { DVec3::ZERO };
+    gathered.set.contacts.push(contact);
+    gathered.met.push(met);
+}
+
+/// Notes what points do at the end of a step. Forces work with the mean of those at both ends, as all in implicit
+/// steps.
+fn note<T: Scalar>(
+    contacts: &mut SurfaceContacts,
+    gathered: &Gathered,
+    pairs: &[Pair],
+    all: &[Solved],
+    bodies: &mut [BodySlices<'_, T>],
+) {
+    for pair in pairs.iter().filter(|pair| pair.first) {
+        let gap = pair.gap(&contacts.surface.places);
+        let kept = contacts.kept(pair.point);
+        let touch = bodies[kept.body].kept_mut(kept);
+        set_vector(touch, 0, DVec3::ZERO);
+        let numbers = [pair.allowed, FACES, gap + pair.allowed];
+        touch[3..6].iter_mut().zip(numbers).for_each(|(touch, number)| *touch = T::from_f64(number));
+    }
+    contacts.surface.figures.contacts += gathered.set.contacts.len() as u64;
+    for ((contact, met), Solved { was, rubbed, .. }) in gathered.set.contacts.iter().zip(&gathered.met).zip(all) {
+        let kept = contacts.kept(met.point);
+        let touch = bodies[kept.body].kept_mut(kept);
+        let relative = contact.relative(&gathered.set.earlier);
+        if met.first {
+            set_vector(touch, 0, contact.slip);
+            touch[4] = T::from_f64(if contact.slides { SLIDES } else { STICKS });
+        }
+        let mean = 0.5 * (contact.force() + contact.normal * *was + *rubbed);
+        let along = if contact.slides { contact.along(relative).length() } else { 0.0 };
+        touch[6] = T::from_f64(touch[6].to_f64() + along);
+        touch[7] = T::from_f64(touch[7].to_f64() - mean.dot(relative));
+        let deepest = &mut contacts.surface.figures.deepest;
+        *deepest = deepest.max(-met.gap);
+    }
+}

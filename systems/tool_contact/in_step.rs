@@ -1,0 +1,90 @@
+//! Tools in a step.
+
+use crate::backend::cpu::IntegrationCoefficients;
+use crate::components::*;
+use glam::{DMat3, DVec3};
+
+/// What a step needs.
+pub struct ContactStep {
+    pub(super) coefficients: IntegrationCoefficients<f64>,
+    /// How far a node that is inside a tool comes out in this step (m).
+    pub(super) out: f64,
+    /// Whether work is counted: not on the way to rest.
+    pub(super) counts_work: bool,
+    /// Δt (s), and how springs press in it where it is implicit.
+    pub(super) time: f64,
+    pub(super) springs: Option<SolvedSprings>,
+    /// As many as there are, and then anything.
+    pub(super) tools: [ToolInStep; ToolContacts::MOST],
+}
+
+/// A tool in a step.
+#[derive(Clone, Copy)]
+pub(super) struct ToolInStep {
+    /// Where it is at the end.
+    pub pose: Pose,
+    /// Where it was at the beginning.
+    pub earlier: Pose,
+    /// How these differ.
+    pub change: Pose,
+    /// Middle and radius of a ball (m) with all that the tool may touch; none of a plane.
+    pub ball: Option<(DVec3, f64)>,
+}
+
+impl ContactStep {
+    /// Which of some tools may touch a node at a place (m, from the reference); both as bits.
+    #[inline]
+    pub(super) fn near(&self, tools: u32, place: DVec3) -> u32 {
+        let (mut left, mut near) = (tools, 0);
+        while left != 0 {
+            let tool = left.trailing_zeros();
+            left &= left - 1;
+            let is_far = match self.tools[tool as usize].ball {
+                Some((center, radius)) => center.distance_squared(place) > radius * radius,
+                None => false,
+            };
+            near |= u32::from(!is_far) << tool;
+        }
+        near
+    }
+}
+
+impl ToolContacts {
+    /// What a step that begins at the clock's needs.
+    pub(super) fn in_step(&self, clock: &Clock, signals: &Signals) -> ContactStep {
+        let values = signals.values();
+        let nowhere = Pose { rotation: DMat3::ZERO, at: DVec3::ZERO };
+        let none = ToolInStep { pose: nowhere, earlier: nowhere, change: nowhere, ball: None };
+        let mut tools = [none; ToolContacts::MOST];
+        for (tool, contact) in tools.iter_mut().zip(&self.tools) {
+            let [pose, change] = [0, 3].map(|slot| Pose::of_slots(&values[contact.signal + slot..]));
+            let ball = contact.geometry.bounding_sphere();
+            let earlier = pose.less(&change);
+            // of one whose way is looked at, the ball goes along
+            let goes = |center| if contact.swept > 0.0 { change.place(center).length() } else { 0.0 };
+            let ball = ball.map(|(center, radius)| (pose.place(center), radius + self.edge + goes(center)));
+            *tool = ToolInStep { pose, earlier, change, ball };
+        }
+        ContactStep {
+            coefficients: IntegrationCoefficients::of(clock),
+            out: self.out(clock),
+            counts_work: clock.relaxation.is_none(),
+            time: clock.time_step,
+            springs: clock.springs,
+            tools,
+        }
+    }
+
+    /// The bits of all tools.
+    pub(super) fn all(&self) -> u32 {
+        u32::MAX >> (u32::BITS - self.tools.len().max(1) as u32)
+    }
+
+    /// How far a node that is inside a tool comes out in a step (m).
+    fn out(&self, clock: &Clock) -> f64 {
+        match clock.relaxation {
+            Some(_) => 0.1 * self.edge,
+            None => self.settling * clock.time_step,
+        }
+    }
+}
