@@ -13,8 +13,8 @@ use sinew::scene::schema::OutputField;
 use sinew_pictures::render::Tools;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
 pub use tables::Curves;
+use web_time::Instant;
 
 /// The scene of a run in its folder.
 const SCENE: &str = "scene.ron";
