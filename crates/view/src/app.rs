@@ -142,6 +142,11 @@ impl App {
         app
     }
 
+    /// Starts in a window, or on the canvas of a page.
+    pub fn on_screen(context: &eframe::CreationContext<'_>, start: Start) -> Self {
+        Self::new(&context.egui_ctx, start, context.wgpu_render_state.clone())
+    }
+
     /// The newest state that was drawn.
     pub fn state(&self) -> &State {
         &self.state

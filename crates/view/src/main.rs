@@ -133,14 +133,13 @@ fn main() -> ExitCode {
     let wgpu_options = WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() };
     let options = eframe::NativeOptions { viewport, wgpu_options, ..eframe::NativeOptions::default() };
     let app: eframe::AppCreator<'_> = Box::new(|context| {
-        let screen = context.wgpu_render_state.clone();
         // what is simulated on the window's device is drawn from where it is
-        start.options.host = screen.as_ref().map(|screen| Host {
+        start.options.host = context.wgpu_render_state.as_ref().map(|screen| Host {
             adapter: screen.adapter.clone(),
             device: screen.device.clone(),
             queue: screen.queue.clone(),
         });
-        Ok(Box::new(App::new(&context.egui_ctx, start, screen)))
+        Ok(Box::new(App::on_screen(context, start)))
     });
     match eframe::run_native("sinew", options, app) {
         Ok(()) => ExitCode::SUCCESS,

@@ -52,9 +52,7 @@ impl Page {
             bundle: Some(bundle),
             ..Start::default()
         };
-        let app: eframe::AppCreator<'static> = Box::new(move |context| {
-            Ok(Box::new(App::new(&context.egui_ctx, start, context.wgpu_render_state.clone())))
-        });
+        let app: eframe::AppCreator<'static> = Box::new(move |context| Ok(Box::new(App::on_screen(context, start))));
         self.runner.start(canvas, WebOptions::default(), app).await
     }
 

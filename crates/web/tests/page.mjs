@@ -1,5 +1,5 @@
-// The page in a browser without a window: what it draws by WebGPU and by WebGL, what its editor does, what is dropped on
-// it, and whether steps come to what they come to in a program.
+// The page in a browser without a window: what it draws by WebGPU and by WebGL, what its editor does, what is dropped
+// on it, and whether steps come to what they come to in a program.
 //
 //   node page.mjs SITE CHROMIUM OUT NATIVE.csv STEPS SCENE.ron    SITE: the folder of the page; OUT: for pictures
 import { createServer } from "node:http";
@@ -28,7 +28,9 @@ const address = `http://127.0.0.1:${server.address().port}/`;
 // a software device draws: SwiftShader, by Vulkan for WebGPU, by ANGLE for WebGL
 const software = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"];
 const ways = {
-  webgpu: [...software, "--enable-unsafe-webgpu", "--enable-gpu", "--enable-features=Vulkan", "--use-vulkan=swiftshader"],
+  webgpu: [
+    ...software, "--enable-unsafe-webgpu", "--enable-gpu", "--enable-features=Vulkan", "--use-vulkan=swiftshader",
+  ],
   webgl: [...software, "--disable-features=WebGPU,WebGPUService"],
 };
 const wrong = [];
@@ -37,7 +39,9 @@ const patience = Number(process.env.SINEW_PATIENCE ?? 240) * 1000;
 
 async function open(browser, hash) {
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
-  page.on("console", (message) => { if (message.type() === "error") console.log(`  console: ${message.text().slice(0, 400)}`); });
+  page.on("console", (message) => {
+    if (message.type() === "error") console.log(`  console: ${message.text().slice(0, 400)}`);
+  });
   page.on("pageerror", (error) => console.log(`  page: ${error}`));
   await page.goto(address + hash);
   return page;
@@ -90,11 +94,12 @@ async function type(page, text) {
 async function edited(page) {
   const scene = (await readFile(sceneFile, "utf8"));
   await type(page, scene.replace("duration:", "durations:"));
-  await until(page, "editor: a mistake is told where it is", (now) => now.mistakes.some((line) => /:\d+:\d+: .*durations/.test(line)));
+  const tells = (pattern) => (now) => now.number === 0 && now.mistakes.some((line) => pattern.test(line));
+  await until(page, "editor: a mistake is told where it is", tells(/:\d+:\d+: .*durations/));
   await picture(page, "mistake", middle);
   await type(page, scene.replace("z0", "z7"));
   await page.keyboard.press("Control+Enter");
-  await until(page, "editor: what only loading finds is told", (now) => now.number === 0 && now.mistakes.some((line) => line.includes("z7")));
+  await until(page, "editor: what only loading finds is told", tells(/z7/));
   await type(page, scene);
   await page.keyboard.press("Control+Enter");
   await until(page, "editor: the text is loaded and goes on", (now) => now.number === 1 && now.step > 5);
@@ -106,7 +111,8 @@ async function dropped(page) {
     const data = new DataTransfer();
     data.items.add(new File([text], "dropped.ron"));
     const canvas = document.getElementById("sinew");
-    for (const kind of ["dragover", "drop"]) canvas.dispatchEvent(new DragEvent(kind, { dataTransfer: data, bubbles: true, cancelable: true }));
+    const about = { dataTransfer: data, bubbles: true, cancelable: true };
+    for (const kind of ["dragover", "drop"]) canvas.dispatchEvent(new DragEvent(kind, about));
   }, scene);
   await until(page, "a scene that is dropped is opened", (now) => now.scene === "dropped.ron");
 }
@@ -115,7 +121,8 @@ async function dropped(page) {
 // once.
 async function compared(page) {
   const scene = await readFile(sceneFile, "utf8");
-  const run = JSON.parse(await page.evaluate(([text, steps]) => window.sinew.runSteps(text, steps), [scene, Number(steps)]));
+  const asked = [scene, Number(steps)];
+  const run = JSON.parse(await page.evaluate(([text, steps]) => window.sinew.runSteps(text, steps), asked));
   const [head, ...rows] = (await readFile(nodesFile, "utf8")).trim().split("\n").map((line) => line.split(","));
   const column = (name) => head.findIndex((title) => title.trim().split(" ")[0] === name);
   const [places, moves] = [["X", "Y", "Z"].map(column), ["ux", "uy", "uz"].map(column)];
@@ -129,7 +136,8 @@ async function compared(page) {
   });
   const micro = (1e6 * run.seconds / run.steps).toFixed(0);
   console.log(`  ${run.elements} elements, ${run.steps} steps: ${micro} µs a step`);
-  check(rows.length === body.length && moved > 0 && far < 1e-4 * moved, `nodes are where a program's are: ${far} m off of ${moved} m`);
+  const is = rows.length === body.length && moved > 0 && far < 1e-4 * moved;
+  check(is, `nodes are where a program's are: ${far} m off of ${moved} m`);
 }
 
 try {
