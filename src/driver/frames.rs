@@ -59,9 +59,4 @@ impl FrameDriver {
     pub fn is_behind(&self) -> bool {
         self.is_behind
     }
-
-    /// The session, for what no command does.
-    pub fn session(&mut self) -> &mut Session {
-        &mut self.session
-    }
 }

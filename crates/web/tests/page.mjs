@@ -84,23 +84,27 @@ async function drawn(way, device) {
   return { browser, page };
 }
 
-// Puts a text into the editor, as a hand would.
-async function type(page, text) {
+// Pastes a text into the editor in place of what is there.
+async function paste(page, text) {
   await page.mouse.click(200, 400);
   await page.keyboard.press("Control+A");
-  await page.keyboard.insertText(text);
+  await page.evaluate((text) => {
+    const clipboardData = new DataTransfer();
+    clipboardData.setData("text/plain", text);
+    document.dispatchEvent(new ClipboardEvent("paste", { clipboardData, bubbles: true, cancelable: true }));
+  }, text);
 }
 
 async function edited(page) {
   const scene = (await readFile(sceneFile, "utf8"));
-  await type(page, scene.replace("duration:", "durations:"));
+  await paste(page, scene.replace("duration:", "durations:"));
   const tells = (pattern) => (now) => now.number === 0 && now.mistakes.some((line) => pattern.test(line));
   await until(page, "editor: a mistake is told where it is", tells(/:\d+:\d+: .*durations/));
   await picture(page, "mistake", middle);
-  await type(page, scene.replace("z0", "z7"));
+  await paste(page, scene.replace("z0", "z7"));
   await page.keyboard.press("Control+Enter");
   await until(page, "editor: what only loading finds is told", tells(/z7/));
-  await type(page, scene);
+  await paste(page, scene);
   await page.keyboard.press("Control+Enter");
   await until(page, "editor: the text is loaded and goes on", (now) => now.number === 1 && now.step > 5);
 }
