@@ -196,7 +196,7 @@ impl Session {
 /// Why a command is not obeyed.
 fn refusal(command: &'static str, error: &Error) -> Refusal {
     let mistakes = if let Error::Scene(wrong) = error { wrong.placed() } else { Vec::new() };
-    Refusal { command, reason: error.to_string(), mistakes }
+    Refusal { mistakes, ..Refusal::new(command, error.to_string()) }
 }
 
 /// The word by which a refusal names a command.

@@ -174,3 +174,10 @@ pub struct Refusal {
     /// What is wrong with a scene, with where it stands; empty for what is no mistake of a scene.
     pub mistakes: Vec<Placed>,
 }
+
+impl Refusal {
+    /// A command that was refused for another reason than mistakes of a scene.
+    pub fn new(command: &'static str, reason: impl Into<String>) -> Self {
+        Self { command, reason: reason.into(), mistakes: Vec::new() }
+    }
+}

@@ -1,7 +1,7 @@
 //! The scene's file: read, and read again when it has changed.
 
 use sinew::SceneFile;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, SystemTime};
 use web_time::Instant;
 
@@ -20,7 +20,8 @@ pub enum Opened {
 /// A scene's file, which may change, or the folder of a run.
 #[derive(Debug)]
 pub struct Files {
-    path: Option<PathBuf>,
+    /// The file.
+    pub path: Option<PathBuf>,
     sets: Vec<String>,
     changed: Option<SystemTime>,
     looked: Instant,
@@ -30,11 +31,6 @@ impl Files {
     /// A file, if there is one yet, and the values that are put into it.
     pub fn new(path: Option<PathBuf>, sets: Vec<String>) -> Self {
         Self { path, sets, changed: None, looked: Instant::now() }
-    }
-
-    /// The file.
-    pub fn path(&self) -> Option<&Path> {
-        self.path.as_deref()
     }
 
     /// Reads it again with more values put in.

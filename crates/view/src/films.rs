@@ -94,7 +94,7 @@ impl App {
     fn file_stem(&self) -> String {
         let name = self.editor.as_ref().map(|editor| Path::new(&editor.name));
         let stem = name
-            .or(self.files.path())
+            .or(self.files.path.as_deref())
             .and_then(|path| path.file_stem())
             .map(|stem| stem.to_string_lossy().into_owned());
         stem.filter(|stem| !stem.is_empty()).unwrap_or_else(|| "sinew".into())

@@ -165,7 +165,7 @@ fn unmarked(job: &mut LayoutJob, text: &str, plain: &TextFormat) {
 /// Where a comment begins in a line, or the line ends; what stands in quotes is none.
 fn comment_start(line: &str) -> usize {
     let slashes = line.match_indices("//").map(|(at, _)| at);
-    slashes.into_iter().find(|at| line[..*at].matches('"').count() % 2 == 0).unwrap_or(line.len())
+    slashes.into_iter().find(|at| line[..*at].matches('"').count().is_multiple_of(2)).unwrap_or(line.len())
 }
 
 #[cfg(test)]

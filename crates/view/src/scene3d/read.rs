@@ -21,7 +21,7 @@ impl Scene3d {
 impl Target {
     /// Brings the picture to the host, and waits for that; none where the device is lost.
     fn read(&self, device: &Device, queue: &Queue) -> Option<Image> {
-        let (width, height) = self.size;
+        let ((width, height), picture) = (self.size, self.resolved.texture());
         let row = (4 * width).next_multiple_of(COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = device.create_buffer(&BufferDescriptor {
             label: Some("picture"),
@@ -32,9 +32,9 @@ impl Target {
         let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor::default());
         let layout = TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
         encoder.copy_texture_to_buffer(
-            self.picture.as_image_copy(),
+            picture.as_image_copy(),
             TexelCopyBufferInfo { buffer: &buffer, layout },
-            self.picture.size(),
+            picture.size(),
         );
         queue.submit([encoder.finish()]);
         buffer.map_async(MapMode::Read, .., |_| ());

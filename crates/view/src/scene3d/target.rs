@@ -12,10 +12,8 @@ pub struct Target {
     pub size: (u32, u32),
     samples: TextureView,
     depth: TextureView,
-    /// The picture.
-    pub picture: Texture,
     /// The picture as it is drawn into.
-    resolved: TextureView,
+    pub resolved: TextureView,
     /// The picture as others show it: bytes as screens take them.
     pub shown: TextureView,
 }
@@ -72,7 +70,6 @@ impl Target {
             depth: texture(device, size, SAMPLES, DEPTH, usage).create_view(&whole),
             resolved: picture.create_view(&whole),
             shown: picture.create_view(&bytes),
-            picture,
         }
     }
 
