@@ -43,6 +43,7 @@ async function open(browser, hash) {
     if (message.type() === "error") console.log(`  console: ${message.text().slice(0, 400)}`);
   });
   page.on("pageerror", (error) => console.log(`  page: ${error}`));
+  page.on("crash", () => console.log("  page: it crashed"));
   await page.goto(address + hash);
   return page;
 }
@@ -114,7 +115,7 @@ async function dropped(page) {
   await page.evaluate((text) => {
     const data = new DataTransfer();
     data.items.add(new File([text], "dropped.ron"));
-    const canvas = document.getElementById("sinew");
+    const canvas = document.getElementById("canvas");
     const about = { dataTransfer: data, bubbles: true, cancelable: true };
     for (const kind of ["dragover", "drop"]) canvas.dispatchEvent(new DragEvent(kind, about));
   }, scene);

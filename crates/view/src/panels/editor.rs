@@ -19,7 +19,7 @@ impl App {
     /// The text of the scene, and what is wrong with it.
     pub(crate) fn editor_panel(&mut self, ui: &mut Ui) {
         let Some(editor) = &mut self.editor else { return };
-        let loads = ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Enter));
+        let mut loads = ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Enter));
         ui.add_space(3.0);
         ui.horizontal(|ui| {
             let mut chosen = None;
@@ -31,10 +31,9 @@ impl App {
                 }
             });
             let load = ui.add(Button::new("Load")).on_hover_text("takes the scene as it stands here: ctrl + enter");
+            loads |= load.clicked();
             if let Some((name, text)) = chosen {
                 editor.open(name, text);
-            } else if loads || load.clicked() {
-                editor.load(&[]);
             }
         });
         files(ui, editor);
@@ -43,6 +42,10 @@ impl App {
             Panel::bottom("mistakes").resizable(true).show(ui, |ui| jump = list(ui, &editor.mistakes));
         }
         ScrollArea::both().auto_shrink([false; 2]).show(ui, |ui| text(ui, editor, jump));
+        // with what was typed in the same frame
+        if loads {
+            editor.load(&[]);
+        }
     }
 }
 

@@ -63,7 +63,7 @@ const PANE = 6u;
 const TISSUE = 7u;
 
 // Some of the bits of flags; `extractBits` is not in all of WebGL.
-fn bits(flags: u32, from: u32, count: u32) -> u32 { return (flags >> from) & ((1u << count) - 1u); }
+fn bits(flags: u32, first: u32, count: u32) -> u32 { return (flags >> first) & ((1u << count) - 1u); }
 
 fn finish_of(flags: u32) -> u32 { return bits(flags, 13u, 4u); }
 
