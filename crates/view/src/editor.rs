@@ -242,7 +242,8 @@ mod tests {
         assert_eq!(editor.bundle.files["lens.msh"], [1]);
         editor.inbox.put("other.ron".into(), Ok(CUBE.replace("duration: 1,", "duration: 3,").into_bytes()));
         assert!(editor.take_dropped().unwrap().is_ok() && editor.take_dropped().is_none());
-        assert_eq!((editor.name.as_str(), editor.take_scene().unwrap().scene.duration), ("other.ron", 3.0));
+        assert_eq!(editor.take_scene().unwrap().scene.duration, 3.0);
+        assert_eq!(editor.name, "other.ron");
         editor.inbox.put("bad.ron".into(), Ok(vec![0xff]));
         assert!(editor.take_dropped().unwrap().unwrap_err().contains("bad.ron: it is not a text"));
         assert_eq!(editor.name, "other.ron");

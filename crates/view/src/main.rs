@@ -107,6 +107,7 @@ fn main() -> ExitCode {
         shot: arguments
             .shot
             .map(|path| Shot::new(path, Duration::try_from_secs_f64(arguments.after).unwrap_or_default())),
+        bundle: None,
     };
     let told = match (&arguments.film, arguments.frame_times) {
         (Some(film), _) => Some(headless::film(&start, film, arguments.size, arguments.speed)),

@@ -65,10 +65,11 @@ async function until(page, what, done) {
   }
 }
 
-// A picture of one colour packs to next to nothing: what it has beyond that is what is drawn.
+// A picture of the page, or of a part of it, in OUT; its bytes. One of one colour packs to next to nothing.
 async function picture(page, name, clip) {
-  await writeFile(join(out, `${name}.png`), await page.screenshot());
-  return (await page.screenshot({ clip })).length;
+  const bytes = await page.screenshot({ clip, timeout: patience });
+  await writeFile(join(out, `${name}.png`), bytes);
+  return bytes.length;
 }
 
 // where the picture of the scene is: right of the panels
@@ -101,13 +102,13 @@ async function edited(page) {
   await paste(page, scene.replace("duration:", "durations:"));
   const tells = (pattern) => (now) => now.number === 0 && now.mistakes.some((line) => pattern.test(line));
   await until(page, "editor: a mistake is told where it is", tells(/:\d+:\d+: .*durations/));
-  await picture(page, "mistake", middle);
+  await picture(page, "mistake");
   await paste(page, scene.replace("z0", "z7"));
   await page.keyboard.press("Control+Enter");
   await until(page, "editor: what only loading finds is told", tells(/z7/));
   await paste(page, scene);
   await page.keyboard.press("Control+Enter");
-  await until(page, "editor: the text is loaded and goes on", (now) => now.number === 1 && now.step > 5);
+  await until(page, "editor: the text is loaded", (now) => now.number === 1 && now.mistakes.length === 0);
 }
 
 async function dropped(page) {
