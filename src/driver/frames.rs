@@ -8,8 +8,8 @@ use std::sync::Arc;
 use std::time::Duration;
 use web_time::Instant;
 
-/// A [`Session`] that takes its steps in the frames of who looks: where there are no threads, in a page. It is used as a
-/// driver with a thread is, but that a frame has to be asked for.
+/// A [`Session`] that takes its steps in the frames of who looks: where there are no threads, in a page. It is used as
+/// a driver with a thread is, but that a frame has to be asked for.
 pub struct FrameDriver {
     session: Session,
     newest: Arc<State>,

@@ -150,7 +150,8 @@ impl Editor {
         self.inbox.read(file, context);
     }
 
-    /// Takes in what was dropped: a scene is opened, files of other kinds and those that the text names are kept for scenes. Gives what is to be told.
+    /// Takes in what was dropped: a scene is opened, files of other kinds and those that the text names are kept for
+    /// scenes. Gives what is to be told.
     pub fn take_dropped(&mut self) -> Option<Result<String, String>> {
         let mut told = None;
         for (name, bytes) in self.inbox.take() {

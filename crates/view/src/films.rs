@@ -1,4 +1,5 @@
-//! Pictures and films of what is seen that go into files: the window takes a picture each 1/25 s of the film, whatever time on the wall that takes.
+//! Pictures and films of what is seen that go into files: the window takes a picture each 1/25 s of the film, whatever
+//! time on the wall that takes.
 
 use crate::app::App;
 use crate::camera::Orbit;
