@@ -16,7 +16,7 @@ struct Arguments {
     /// Where to put it
     #[arg(long, value_name = "DIR", default_value = "out/web")]
     out: PathBuf,
-    /// How it is compiled: `page` is small and fast and takes minutes, `dev` is quicker, for trying things out
+    /// The profile of Cargo that it is compiled by
     #[arg(long, default_value = "page")]
     profile: String,
     /// Fail if it is larger than so many bytes when a server sends it (packed by gzip)
@@ -45,10 +45,6 @@ fn make(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.args(["build", "--package", "sinew-web", "--lib", "--target", TARGET, "--profile", &arguments.profile]);
-    if arguments.profile == "dev" {
-        // the engine as fast as it can be takes most of the time
-        cargo.args(["--config", "profile.dev.package.sinew.opt-level=1"]);
-    }
     // in the repository, whose .cargo/config.toml says for which processors
     cargo.current_dir(&root);
     if !cargo.status()?.success() {
