@@ -1,7 +1,7 @@
 //! The driver: commands in, states out, whatever becomes of the simulation.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use sinew::driver::{Command, Driver, Session, State};
+use sinew::driver::{Command, Driver, FrameDriver, Session, State};
 use sinew::glam::DVec3;
 use sinew::scene::schema::OutputField;
 use sinew::{BackendChoice, Options, SceneFile};
@@ -157,6 +157,52 @@ fn a_breakdown_is_a_state_and_what_comes_after_it_goes_on() {
     session.command(Command::Step(3));
     let state = session.state();
     assert!(state.breakdown.is_none() && state.step == 3);
+}
+
+#[test]
+fn frames_take_the_steps_that_are_due_by_the_clock() {
+    let mut driver = FrameDriver::new(options());
+    driver.send(Command::Load(scene(FALL)));
+    assert!(driver.is_behind() && driver.state().loaded.is_none());
+    assert!(!driver.frame(AMPLE) && !driver.is_behind() && driver.state().loaded.is_some());
+    driver.send(Command::Run);
+    // no time has passed for the first one
+    assert!(driver.frame(AMPLE));
+    assert_eq!(driver.state().step, 0);
+    std::thread::sleep(Duration::from_millis(20));
+    assert!(driver.frame(AMPLE));
+    let state = driver.state();
+    // steps of 1 ms; a frame makes good .1 s at most
+    assert!((20..=101).contains(&state.step), "{}", state.step);
+    let mut alone = session(FALL);
+    alone.command(Command::Step(state.step));
+    assert_eq!(bits(&alone.state()), bits(&state));
+    // one step without any time to take it in
+    std::thread::sleep(Duration::from_millis(20));
+    assert!(driver.frame(Duration::ZERO));
+    assert_eq!(driver.state().step, state.step + 1);
+    driver.send(Command::Pause);
+    assert!(driver.is_behind() && !driver.frame(AMPLE));
+    assert!(!driver.state().running && driver.state().step == state.step + 1);
+    // what passed meanwhile is not made good
+    std::thread::sleep(Duration::from_millis(20));
+    driver.send(Command::Run);
+    assert!(driver.frame(AMPLE));
+    assert_eq!(driver.state().step, state.step + 1);
+}
+
+#[test]
+fn mistakes_of_a_scene_say_where_they_are() {
+    let mut session = session("");
+    let wrong = scene("loads: [Gravity(body: \"nobody\", acceleration: (0, 0, -9.81))]");
+    let text = wrong.text().to_string();
+    session.command(Command::Load(wrong));
+    let mistakes = session.state().refusal.unwrap().mistakes;
+    let [mistake] = mistakes.as_slice() else { panic!("{mistakes:?}") };
+    assert_eq!((mistake.text.as_str(), &text[mistake.bytes.clone()]), ("test.ron", "\"nobody\""));
+    assert!(mistake.place.starts_with("test.ron:3:"), "{}", mistake.place);
+    session.command(Command::Speed(-1.0));
+    assert_eq!(session.state().refusal.unwrap().mistakes, []);
 }
 
 #[test]

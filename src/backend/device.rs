@@ -176,7 +176,7 @@ impl Device {
 /// What the GPU says.
 pub fn bring_to_host(world: &mut World, wanted: impl Fn(Entity, &'static str) -> bool) -> Result<(), Error> {
     let Some(mut device) = world.remove_resource::<Device>() else { return Ok(()) };
-    let started = std::time::Instant::now();
+    let started = web_time::Instant::now();
     let keys = device.keys_of(Truth::Device, |key, _| wanted(key.0, key.1));
     let range = |column: &DeviceColumn| (column.buffer, column.place.start, column.place.end - column.place.start);
     let ranges: Vec<(BufferId, u64, u64)> = keys.iter().map(|key| range(&device.columns[key])).collect();
@@ -215,7 +215,7 @@ pub fn overwrite_on_device(world: &mut World, written: impl Fn(Entity, &'static 
 
 fn send(world: &mut World, truths: &[Truth], written: impl Fn(Entity, &'static str) -> bool) -> Result<(), Error> {
     let Some(mut device) = world.remove_resource::<Device>() else { return Ok(()) };
-    let started = std::time::Instant::now();
+    let started = web_time::Instant::now();
     for &truth in truths {
         for key in device.keys_of(truth, |key, _| written(key.0, key.1)) {
             if let Err(error) = device.upload(world, key) {

@@ -60,7 +60,7 @@ impl Session {
             Ok(()) => drop(self.refusal.take_if(|refusal| refusal.command == name)),
             // a breakdown is a state of its own
             Err(Error::Unstable(_)) => {}
-            Err(error) => self.refusal = Some(Refusal { command: name, reason: error.to_string() }),
+            Err(error) => self.refusal = Some(refusal(name, &error)),
         }
     }
 
@@ -87,7 +87,7 @@ impl Session {
             Err(error) => {
                 self.running = false;
                 if !matches!(error, Error::Unstable(_)) {
-                    self.refusal = Some(Refusal { command: "run", reason: error.to_string() });
+                    self.refusal = Some(refusal("run", &error));
                 }
             }
         }
@@ -107,7 +107,7 @@ impl Session {
             state.picked = run.picked.clone();
             if let Err(error) = self.look.at(&mut run.simulation, &run.hands, running, &mut state) {
                 self.running = false;
-                self.refusal = Some(Refusal { command: "run", reason: error.to_string() });
+                self.refusal = Some(refusal("run", &error));
             }
         }
         state.refusal = self.refusal.clone();
@@ -191,6 +191,12 @@ impl Session {
         self.run = Some(Run { simulation, hands: Hands::default(), picked: None, beyond: false });
         Ok(())
     }
+}
+
+/// Why a command is not obeyed.
+fn refusal(command: &'static str, error: &Error) -> Refusal {
+    let mistakes = if let Error::Scene(wrong) = error { wrong.placed() } else { Vec::new() };
+    Refusal { mistakes, ..Refusal::new(command, error.to_string()) }
 }
 
 /// The word by which a refusal names a command.

@@ -4,6 +4,7 @@ use crate::assembly::CriticalElement;
 use crate::components::Energies;
 use crate::mesh::{Cells, Ids};
 use crate::observation::{SkinState, ToolReading};
+use crate::scene::Placed;
 use crate::scene::schema::OutputField;
 use crate::{GpuColumn, InputValue, Instability, Pick, SceneFile};
 use glam::{DQuat, DVec3};
@@ -170,4 +171,13 @@ pub struct Refusal {
     pub command: &'static str,
     /// Why, in words for who sent it; of a scene with places in its text.
     pub reason: String,
+    /// What is wrong with a scene, with where it stands; empty for what is no mistake of a scene.
+    pub mistakes: Vec<Placed>,
+}
+
+impl Refusal {
+    /// A command that was refused for another reason than mistakes of a scene.
+    pub fn new(command: &'static str, reason: impl Into<String>) -> Self {
+        Self { command, reason: reason.into(), mistakes: Vec::new() }
+    }
 }

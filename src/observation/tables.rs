@@ -7,7 +7,7 @@ use crate::components::Clock;
 use crate::error::Error;
 use crate::output::WHOLE;
 use bevy_ecs::prelude::*;
-use std::time::Instant;
+use web_time::Instant;
 
 impl Observer {
     /// Observes all that is due. The guards have looked before: a GPU has nothing left to do, and what this takes is

@@ -46,6 +46,19 @@ pub struct Diagnostic {
     pub notes: Vec<String>,
 }
 
+/// A mistake with where it stands in the text that its author wrote.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Placed {
+    /// The name of that text: the scene's, that of another file, or `--set`; empty for what has no place.
+    pub text: String,
+    /// The bytes of it.
+    pub bytes: Span,
+    /// The same as line and column: `cube.ron:3:15`; empty for what has no place.
+    pub place: String,
+    /// What is wrong.
+    pub diagnostic: Diagnostic,
+}
+
 impl Diagnostic {
     /// An error at a place.
     #[doc(hidden)]
@@ -116,11 +129,11 @@ fn shortened(mut text: String, most: usize) -> String {
 }
 
 /// `cube.ron:3:15`: a file, a line and a column of it.
-fn numbered((name, text, start): (&str, &str, usize)) -> String {
-    let before = &text[..start];
+fn numbered(file: &TextFile, start: usize) -> String {
+    let before = &file.text[..start];
     let line = before.matches('\n').count() + 1;
     let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
-    format!("{name}:{line}:{column}")
+    format!("{}:{line}:{column}", file.name)
 }
 
 /// How many mistakes are shown in one go.
@@ -264,21 +277,33 @@ impl Diagnostics {
             (Some(file), None) => format!("{}: {grade}: {message}", file.name),
             (_, None) => format!("{grade}: {message}"),
             (_, Some(at)) => match self.text_at(diagnostic, at) {
-                Some(place) => format!("{}: {grade}: {message}", numbered(place)),
+                Some((file, bytes)) => format!("{}: {grade}: {message}", numbered(file, bytes.start)),
                 None => format!("{grade}: {message}"),
             },
         }
     }
 
-    /// The name and text of the file that a place of a mistake is in, and the byte where it begins.
-    fn text_at<'a>(&'a self, diagnostic: &'a Diagnostic, at: &Span) -> Option<(&'a str, &'a str, usize)> {
+    /// The mistakes with where they stand in what their author wrote, in the order of the file: for editors.
+    pub fn placed(&self) -> Vec<Placed> {
+        let placed = |diagnostic: &Diagnostic| {
+            let found = diagnostic.at.as_ref().and_then(|at| self.text_at(diagnostic, at));
+            let (text, place, bytes) = match found {
+                Some((file, bytes)) => (file.name.clone(), numbered(file, bytes.start), bytes),
+                None => (String::new(), String::new(), 0..0),
+            };
+            Placed { text, bytes, place, diagnostic: diagnostic.clone() }
+        };
+        self.sorted().into_iter().map(placed).collect()
+    }
+
+    /// The file that a place of a mistake is in, and its bytes there.
+    fn text_at<'a>(&'a self, diagnostic: &'a Diagnostic, at: &Span) -> Option<(&'a TextFile, Span)> {
         if let Some(file) = &diagnostic.file {
-            return Some((&file.name, &file.text, at.start));
+            return Some((file, at.clone()));
         }
         let source = self.source.as_ref()?;
         let place = source.place(at);
-        let text = source.texts.get(place.text)?;
-        Some((&text.name, &text.text, place.span.start))
+        Some((source.texts.get(place.text)?, place.span))
     }
 
     fn sorted(&self) -> Vec<&Diagnostic> {

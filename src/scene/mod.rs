@@ -31,7 +31,7 @@ pub mod validate;
 pub mod words;
 
 pub(crate) use adjust::other_than_parameters;
-pub use diagnostic::{Diagnostic, Diagnostics, Severity, TextFile};
+pub use diagnostic::{Diagnostic, Diagnostics, Placed, Severity, TextFile};
 pub use file_access::FileSource;
 pub use limits::Allowed;
 pub use load::SceneFile;

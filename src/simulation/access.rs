@@ -12,7 +12,7 @@ use crate::{SceneFile, systems::Registry};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use std::collections::BTreeMap;
-use std::time::Instant;
+use web_time::Instant;
 
 impl Simulation {
     /// The world. On the GPU its columns may be older than the device's: the functions below bring what they return.

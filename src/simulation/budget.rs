@@ -3,7 +3,8 @@
 use super::Simulation;
 use crate::backend::device::Device;
 use crate::error::Error;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// Batches take half of what is left of the budget: what a step takes is known from those before, and may be more now.
 const SHARE: f64 = 0.5;

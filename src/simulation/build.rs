@@ -28,7 +28,8 @@ use crate::systems::{
 };
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemAccess;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 impl Simulation {
     /// Makes a simulation of a scene with the built-in systems.

@@ -15,7 +15,7 @@ use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use bevy_ecs::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::time::Instant;
+use web_time::Instant;
 
 /// Steps between two checks of all elements: where strains change slowly at least, and at most; and no more than have
 /// been taken since the beginning or since loads and motions last became quicker, because what begins smoothly becomes

@@ -7,7 +7,8 @@ use crate::observation::{Observer, write_fields};
 use crate::output::Series;
 use crate::snapshot::Snapshot;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// The series of the last states before a breakdown, in the output folder.
 const LAST_STATES: &str = "last_states";

@@ -17,7 +17,7 @@ use crate::port::{DevicePose, EngineEnd, ToolPort, Touch, open};
 use crate::scene::schema::Scene;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, VecDeque};
-use std::time::Instant;
+use web_time::Instant;
 
 /// A pose with which a batch of steps began. See [`InputRecording`](super::InputRecording).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -14,7 +14,7 @@ use crate::scene::schema::{Analysis, EquilibriumSearch, InitialState, Integratio
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use serde::Serialize;
-use std::time::Instant;
+use web_time::Instant;
 
 /// What bringing the bodies to rest before the first step took.
 #[derive(Clone, Debug, PartialEq, Serialize)]

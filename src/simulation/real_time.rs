@@ -4,7 +4,8 @@ use super::Simulation;
 use crate::assembly::steps_of;
 use crate::components::Clock;
 use serde::Serialize;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// Simulated time between two checks of the clock on the wall (s); and who is later than that goes on from there.
 const TICK: f64 = 1e-3;
@@ -73,7 +74,7 @@ impl Simulation {
         let now = Instant::now();
         let wait = self.metronome.wait(now, clock.time());
         if !wait.is_zero() {
-            std::thread::sleep(wait);
+            sleep(wait);
             self.metronome.kept.waited += now.elapsed().as_secs_f64();
         }
         self.metronome.next = soon;
@@ -84,6 +85,15 @@ impl Simulation {
         if self.scene.real_time { self.metronome.next.max(self.step_count() + 1) } else { u64::MAX }
     }
 }
+
+#[cfg(not(target_arch = "wasm32"))]
+fn sleep(wait: Duration) {
+    std::thread::sleep(wait);
+}
+
+/// In a page nothing may wait: its frames keep the pace.
+#[cfg(target_arch = "wasm32")]
+fn sleep(_: Duration) {}
 
 #[cfg(test)]
 mod tests {

@@ -9,7 +9,8 @@ use crate::components::*;
 use crate::error::{Error, GpuFailure};
 use crate::observation::Observer;
 use bevy_ecs::prelude::*;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// A time is a whole number of steps that is so little of one away.
 const WHOLE: f64 = 1e-6;

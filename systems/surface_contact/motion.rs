@@ -7,7 +7,7 @@ use crate::backend::cpu::Cpu;
 use crate::contact::{Finder, Lists, Point, Shortlist, Stays};
 use crate::math::Scalar;
 use glam::DVec3;
-use std::time::Instant;
+use web_time::Instant;
 
 /// Triangles whose normals a task finds.
 const TRIANGLES_A_TASK: usize = 1024;

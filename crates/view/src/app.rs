@@ -1,7 +1,8 @@
 //! The viewer: a driver, what is seen of it, and what the user asks for.
 
 use crate::camera::Orbit;
-use crate::files::{Files, Opened, free_name};
+use crate::editor::{Bundle, Editor};
+use crate::files::{Files, Opened};
 use crate::films::Films;
 use crate::marks::Marks;
 use crate::mouse::{Drag, Frame};
@@ -20,8 +21,8 @@ use glam::Vec3;
 use sinew::Options;
 use sinew::driver::{Command, State};
 use sinew::scene::schema::OutputField;
-use sinew_pictures::render::{View, write_png};
-use std::path::{Path, PathBuf};
+use sinew_pictures::render::View;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// What the viewer begins with.
@@ -39,6 +40,9 @@ pub struct Start {
     pub settings: Settings,
     /// A picture of the window that is to be taken.
     pub shot: Option<Shot>,
+    /// Scenes and files in memory, in place of a disk, whose text is edited in the window; `scene` is then the name of
+    /// one of them, and the simulation runs in the window's frames.
+    pub bundle: Option<Bundle>,
 }
 
 /// The viewer.
@@ -64,10 +68,13 @@ pub struct App {
     pub(crate) values: Values,
     pub(crate) films: Films,
     pub(crate) files: Files,
+    /// The text of the scene, where there is no disk.
+    pub(crate) editor: Option<Editor>,
+    pub(crate) shows_editor: bool,
     /// How simulations run.
     options: Options,
     context: egui::Context,
-    picture: Option<Picture>,
+    pub(crate) picture: Option<Picture>,
     /// The field and the arrows that were asked for.
     asked: [Option<OutputField>; 2],
     /// Whether the camera has gone to where it broke down.
@@ -76,16 +83,21 @@ pub struct App {
 }
 
 /// The picture on the screen's device.
-struct Picture {
-    screen: RenderState,
-    scene3d: Scene3d,
+pub(crate) struct Picture {
+    pub(crate) screen: RenderState,
+    pub(crate) scene3d: Scene3d,
     texture: egui::TextureId,
 }
 
 impl App {
     /// Starts; without a device (`screen`) all is there but the picture.
     pub fn new(context: &egui::Context, start: Start, screen: Option<RenderState>) -> Self {
-        let mut source = Source::live(&start.options, context);
+        let name = start.scene.as_ref().map(|path| path.display().to_string());
+        let editor = start.bundle.map(|bundle| Editor::new(bundle, name.as_deref()));
+        let mut source = match editor {
+            Some(_) => Source::framed(&start.options, context),
+            None => Source::live(&start.options, context),
+        };
         let lends = start.options.host.is_some();
         if lends {
             source.send(Command::Lend(true));
@@ -114,6 +126,8 @@ impl App {
             values: Values::default(),
             films: Films::default(),
             files: Files::new(start.scene, start.sets),
+            editor,
+            shows_editor: true,
             options: start.options,
             context: context.clone(),
             picture,
@@ -126,6 +140,11 @@ impl App {
             app.source.send(Command::Run);
         }
         app
+    }
+
+    /// Starts in a window, or on the canvas of a page.
+    pub fn on_screen(context: &eframe::CreationContext<'_>, start: Start) -> Self {
+        Self::new(&context.egui_ctx, start, context.wgpu_render_state.clone())
     }
 
     /// The newest state that was drawn.
@@ -141,7 +160,12 @@ impl App {
     /// Shows all of it.
     pub fn show(&mut self, ui: &mut Ui) {
         self.read_scene();
+        self.source.frame();
         self.state = self.source.state();
+        if let Some(editor) = &mut self.editor {
+            let refusal = self.state.refusal.as_ref().filter(|refusal| refusal.command == "load");
+            editor.note_refusal(refusal.map_or(&[], |refusal| &refusal.mistakes));
+        }
         if self.scenery.follow(&self.state) {
             self.begin();
         }
@@ -149,9 +173,11 @@ impl App {
             self.traces.note(&self.state);
         }
         ui.ctx().set_visuals(if self.settings.dark { egui::Visuals::dark() } else { egui::Visuals::light() });
-        let dropped = ui.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
-        if let Some(path) = dropped {
-            self.files.open(path);
+        for file in ui.input(|input| input.raw.dropped_files.clone()) {
+            match &self.editor {
+                Some(editor) => editor.drop_file(&file, ui.ctx()),
+                None => self.files.open(file.path().to_path_buf()),
+            }
         }
         self.keys(ui);
         self.panels(ui);
@@ -177,6 +203,16 @@ impl App {
     }
 
     fn read_scene(&mut self) {
+        if let Some(editor) = &mut self.editor {
+            if let Some(told) = editor.take_dropped() {
+                let bad = told.is_err();
+                self.news = Some((told.unwrap_or_else(|why| why), bad));
+            }
+            if let Some(scene) = editor.take_scene() {
+                self.source.send(Command::Load(scene));
+            }
+            return;
+        }
         match self.files.poll() {
             Some(Ok(Opened::Scene(scene))) => {
                 self.news = None;
@@ -207,18 +243,6 @@ impl App {
         }
         self.scenery = Scenery::new(lends, None);
         (self.traces, self.values, self.asked) = (Traces::default(), Values::default(), [None; 2]);
-    }
-
-    /// The device of the picture, and its size (pixels).
-    pub(crate) fn screen(&self) -> Option<(wgpu::Device, wgpu::Queue, (u32, u32))> {
-        let picture = self.picture.as_ref()?;
-        Some((picture.screen.device.clone(), picture.screen.queue.clone(), picture.scene3d.size()))
-    }
-
-    /// What files that are written are called.
-    pub(crate) fn file_stem(&self) -> String {
-        let stem = self.files.path().and_then(|path| path.file_stem()).map(|stem| stem.to_string_lossy().into_owned());
-        stem.filter(|stem| !stem.is_empty()).unwrap_or_else(|| "sinew".into())
     }
 
     /// Begins with a scene: the first one is seen as its picture would be.
@@ -295,16 +319,17 @@ impl App {
         }
     }
 
-    /// Writes the picture beside where the viewer was started.
-    fn write_picture(&mut self) {
-        let path = free_name(Path::new(""), &self.file_stem(), "png");
-        self.news = Some(match self.picture.as_ref().and_then(|picture| picture.scene3d.picture()) {
-            None => ("there is no picture without a graphics device; `sinew render` draws without one".into(), true),
-            Some(image) => match write_png(&path, &image) {
-                Ok(()) => (format!("wrote {}", path.display()), false),
-                Err(error) => (error.to_string(), true),
-            },
-        });
+    /// What is wrong with the text that is edited in the window: file, line, column and a sentence each.
+    pub fn mistakes(&self) -> Vec<String> {
+        self.editor.iter().flat_map(|editor| &editor.mistakes).map(|mistake| mistake.line.clone()).collect()
+    }
+
+    /// What draws the picture: name and interface of the device; empty without one.
+    pub fn drawn_by(&self) -> String {
+        self.picture.as_ref().map_or_else(String::new, |picture| {
+            let about = picture.screen.device.adapter_info();
+            format!("{} ({:?})", about.name, about.backend).trim().into()
+        })
     }
 }
 
@@ -323,5 +348,11 @@ impl Picture {
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         self.show(ui);
+    }
+
+    /// So that a page reaches what it has begun.
+    #[cfg(target_arch = "wasm32")]
+    fn as_any_mut(&mut self) -> Option<&mut dyn std::any::Any> {
+        Some(self)
     }
 }

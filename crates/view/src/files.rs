@@ -1,8 +1,9 @@
 //! The scene's file: read, and read again when it has changed.
 
 use sinew::SceneFile;
-use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant, SystemTime};
+use std::path::PathBuf;
+use std::time::{Duration, SystemTime};
+use web_time::Instant;
 
 /// How often the file is looked at.
 const EVERY: Duration = Duration::from_millis(400);
@@ -19,7 +20,8 @@ pub enum Opened {
 /// A scene's file, which may change, or the folder of a run.
 #[derive(Debug)]
 pub struct Files {
-    path: Option<PathBuf>,
+    /// The file.
+    pub path: Option<PathBuf>,
     sets: Vec<String>,
     changed: Option<SystemTime>,
     looked: Instant,
@@ -29,11 +31,6 @@ impl Files {
     /// A file, if there is one yet, and the values that are put into it.
     pub fn new(path: Option<PathBuf>, sets: Vec<String>) -> Self {
         Self { path, sets, changed: None, looked: Instant::now() }
-    }
-
-    /// The file.
-    pub fn path(&self) -> Option<&Path> {
-        self.path.as_deref()
     }
 
     /// Reads it again with more values put in.
@@ -69,12 +66,6 @@ impl Files {
     }
 }
 
-/// The first name `STEM_0001.ENDING`, `STEM_0002.ENDING` ... in a folder that no file has.
-pub fn free_name(folder: &Path, stem: &str, ending: &str) -> PathBuf {
-    let name = |number: u32| folder.join(format!("{stem}_{number:04}.{ending}"));
-    (1..10_000).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(0))
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
@@ -104,14 +95,5 @@ mod tests {
         std::fs::File::open(&path).unwrap().set_modified(later).unwrap();
         std::thread::sleep(EVERY);
         assert!(files.poll().unwrap().unwrap_err().contains("durations"));
-    }
-
-    #[test]
-    fn no_picture_is_written_over() {
-        let folder = tempfile::tempdir().unwrap();
-        let first = free_name(folder.path(), "cube", "png");
-        assert!(first.ends_with("cube_0001.png"));
-        std::fs::write(first, "").unwrap();
-        assert!(free_name(folder.path(), "cube", "png").ends_with("cube_0002.png"));
     }
 }

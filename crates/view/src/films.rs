@@ -1,16 +1,16 @@
-//! Films of what is seen: the window takes a picture each 1/25 s of the film, whatever time on the wall that takes.
+//! Pictures and films of what is seen that go into files: the window takes a picture each 1/25 s of the film, whatever
+//! time on the wall that takes.
 
 use crate::app::App;
 use crate::camera::Orbit;
-use crate::files::free_name;
 use crate::film::{Film, RATE};
 use crate::scene3d::Scene3d;
 use crate::settings::Settings;
 use crate::stage;
 use crate::surfaces::Scenery;
 use sinew::driver::{Command, State};
-use sinew_pictures::render::Image;
-use std::path::Path;
+use sinew_pictures::render::{Image, write_png};
+use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 
 /// A film that is being taken.
@@ -66,7 +66,41 @@ pub fn picture(
     scene3d.picture()
 }
 
+/// The first name `STEM_0001.ENDING`, `STEM_0002.ENDING` ... in a folder that no file has.
+pub fn free_name(folder: &Path, stem: &str, ending: &str) -> PathBuf {
+    let name = |number: u32| folder.join(format!("{stem}_{number:04}.{ending}"));
+    (1..10_000).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(0))
+}
+
 impl App {
+    /// Writes the picture beside where the viewer was started.
+    pub(crate) fn write_picture(&mut self) {
+        let path = free_name(Path::new(""), &self.file_stem(), "png");
+        self.news = Some(match self.picture.as_ref().and_then(|picture| picture.scene3d.picture()) {
+            None => ("there is no picture without a graphics device; `sinew render` draws without one".into(), true),
+            Some(image) => match write_png(&path, &image) {
+                Ok(()) => (format!("wrote {}", path.display()), false),
+                Err(error) => (error.to_string(), true),
+            },
+        });
+    }
+
+    /// The device of the picture, and its size (pixels).
+    fn screen(&self) -> Option<(wgpu::Device, wgpu::Queue, (u32, u32))> {
+        let picture = self.picture.as_ref()?;
+        Some((picture.screen.device.clone(), picture.screen.queue.clone(), picture.scene3d.size()))
+    }
+
+    /// What files that are written are called.
+    fn file_stem(&self) -> String {
+        let name = self.editor.as_ref().map(|editor| Path::new(&editor.name));
+        let stem = name
+            .or(self.files.path.as_deref())
+            .and_then(|path| path.file_stem())
+            .map(|stem| stem.to_string_lossy().into_owned());
+        stem.filter(|stem| !stem.is_empty()).unwrap_or_else(|| "sinew".into())
+    }
+
     /// How many pictures the film has that is being taken.
     pub(crate) fn pictures_taken(&self) -> Option<usize> {
         self.films.recording.as_ref().map(|recording| recording.film.count)
@@ -138,5 +172,20 @@ impl App {
             true => self.end_film(),
             false => self.source.send(Command::Step(steps)),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::free_name;
+
+    #[test]
+    fn no_picture_is_written_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = free_name(folder.path(), "cube", "png");
+        assert!(first.ends_with("cube_0001.png"));
+        std::fs::write(first, "").unwrap();
+        assert!(free_name(folder.path(), "cube", "png").ends_with("cube_0002.png"));
     }
 }

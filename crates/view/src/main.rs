@@ -107,6 +107,7 @@ fn main() -> ExitCode {
         shot: arguments
             .shot
             .map(|path| Shot::new(path, Duration::try_from_secs_f64(arguments.after).unwrap_or_default())),
+        bundle: None,
     };
     let told = match (&arguments.film, arguments.frame_times) {
         (Some(film), _) => Some(headless::film(&start, film, arguments.size, arguments.speed)),
@@ -133,14 +134,13 @@ fn main() -> ExitCode {
     let wgpu_options = WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() };
     let options = eframe::NativeOptions { viewport, wgpu_options, ..eframe::NativeOptions::default() };
     let app: eframe::AppCreator<'_> = Box::new(|context| {
-        let screen = context.wgpu_render_state.clone();
         // what is simulated on the window's device is drawn from where it is
-        start.options.host = screen.as_ref().map(|screen| Host {
+        start.options.host = context.wgpu_render_state.as_ref().map(|screen| Host {
             adapter: screen.adapter.clone(),
             device: screen.device.clone(),
             queue: screen.queue.clone(),
         });
-        Ok(Box::new(App::new(&context.egui_ctx, start, screen)))
+        Ok(Box::new(App::on_screen(context, start)))
     });
     match eframe::run_native("sinew", options, app) {
         Ok(()) => ExitCode::SUCCESS,

@@ -9,7 +9,8 @@ use crate::surfaces::Scenery;
 use glam::{DVec3, Vec2};
 use sinew::driver::{Command, Session, State};
 use sinew::{BackendChoice, Host};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// A frame's time on the wall.
 const FRAME: Duration = Duration::from_nanos(16_666_667);

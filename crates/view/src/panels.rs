@@ -1,5 +1,6 @@
 //! What stands around the picture.
 
+mod editor;
 mod look;
 mod run;
 mod told;
@@ -57,6 +58,9 @@ impl App {
         Panel::bottom("time").show(ui, |ui| self.time_panel(ui));
         if self.has_news() {
             Panel::bottom("news").resizable(true).show(ui, |ui| self.news_panel(ui));
+        }
+        if self.editor.is_some() && self.shows_editor {
+            Panel::left("scene").resizable(true).default_size(390.0).show(ui, |ui| self.editor_panel(ui));
         }
         Panel::left("look").resizable(true).default_size(230.0).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {

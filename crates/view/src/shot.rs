@@ -3,7 +3,8 @@
 use egui::{ScreenshotCallback, Ui, ViewportCommand};
 use sinew_pictures::render::{Image, write_png};
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// A picture that is to be taken, after which the window is closed.
 #[derive(Clone, Debug)]

@@ -191,7 +191,7 @@ impl Cpu {
             }
         }
         #[cfg(not(target_arch = "x86_64"))]
-        Some(self.arch.dispatch(task))
+        self.dispatch_the_vectors(task)
     }
 
     /// The same with registers of 256 bits at most, as [`dispatch`](Self::dispatch) has them.
@@ -207,7 +207,22 @@ impl Cpu {
             }
         }
         #[cfg(not(target_arch = "x86_64"))]
-        Some(self.arch.dispatch(task))
+        self.dispatch_the_vectors(task)
+    }
+
+    /// The same where registers have one length only.
+    #[cfg(not(target_arch = "x86_64"))]
+    #[inline]
+    fn dispatch_the_vectors<O: pulp::WithSimd>(&self, task: O) -> Option<O::Output> {
+        match self.arch {
+            // a page is compiled for those: without them as well, its kernels would be twice as large
+            #[cfg(target_arch = "wasm32")]
+            pulp::Arch::Simd128(simd) => Some(pulp::Simd::vectorize(simd, task)),
+            #[cfg(target_arch = "wasm32")]
+            _ => None,
+            #[cfg(not(target_arch = "wasm32"))]
+            arch => Some(arch.dispatch(task)),
+        }
     }
 
     /// Runs a task with the widest registers that the machine has.

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, Write};
 use std::path::Path;
-use std::time::{SystemTime, UNIX_EPOCH};
+use web_time::{SystemTime, UNIX_EPOCH};
 
 /// The lock of a run, hidden among its files.
 const OF_A_RUN: &str = ".sinew.lock";
@@ -50,6 +50,7 @@ impl Lock {
             Err(TryLockError::Error(error)) => return Err(OutputError::system("lock", &path)(error)),
         }
         let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
+        #[allow(clippy::disallowed_methods, reason = "disallowed in a page, where there is no folder to lock")]
         let text = json!({ "pid": std::process::id(), "what": what, "since": now }).to_string();
         let written = file.set_len(0).and_then(|()| file.rewind()).and_then(|()| file.write_all(text.as_bytes()));
         written.map_err(OutputError::system("write", &path))?;

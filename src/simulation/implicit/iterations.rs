@@ -15,7 +15,7 @@ use crate::backend::cpu::Cpu;
 use crate::components::Clock;
 use crate::scene::schema;
 use bevy_ecs::prelude::*;
-use std::time::Instant;
+use web_time::Instant;
 
 /// The passes of a step, and how many dispatches its forces are on a GPU where that is asked about.
 pub(in crate::simulation) type OfForces<'a> = (&'a [ScheduledPass], Option<usize>);

@@ -16,7 +16,7 @@ use crate::error::Error;
 use crate::scene::schema;
 use crate::snapshot::Keeping;
 use bevy_ecs::prelude::*;
-use std::time::Instant;
+use web_time::Instant;
 
 /// Newton's iterations at most: slender bodies spend some twenty on the way.
 const MOST_ITERATIONS: u32 = 60;

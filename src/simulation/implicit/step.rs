@@ -19,7 +19,7 @@ use crate::error::{Criterion, Error};
 use crate::observation::Observer;
 use crate::scene::schema::{ImplicitScheme, Inversion, Scene, Solver};
 use bevy_ecs::prelude::*;
-use std::time::Instant;
+use web_time::Instant;
 
 /// What is left of a residual that is warned of.
 const WARNED: f64 = 0.5;

@@ -8,6 +8,9 @@ use sinew::driver::Command;
 /// Speeds that can be chosen.
 const SPEEDS: [f64; 8] = [0.01, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, f64::INFINITY];
 
+/// Whether there are files to write pictures and films into.
+const WRITES: bool = cfg!(not(target_arch = "wasm32"));
+
 fn speed_text(speed: f64) -> String {
     if speed.is_infinite() { "as fast as it can".into() } else { format!("{speed} × real time") }
 }
@@ -44,8 +47,13 @@ impl App {
                     self.shows_keys = !self.shows_keys;
                 }
                 ui.toggle_value(&mut self.shows_plots, "Plots");
-                self.film_button(ui);
-                if ui.button("Picture").on_hover_text("writes the picture as a PNG file").clicked() {
+                if self.editor.is_some() {
+                    ui.toggle_value(&mut self.shows_editor, "Scene");
+                }
+                if WRITES {
+                    self.film_button(ui);
+                }
+                if WRITES && ui.button("Picture").on_hover_text("writes the picture as a PNG file").clicked() {
                     self.wants_picture = true;
                 }
                 if ui.button(if self.settings.dark { "Light" } else { "Dark" }).clicked() {

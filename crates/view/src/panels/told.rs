@@ -7,6 +7,7 @@ use crate::traces::ENERGIES;
 use egui::{Color32, RichText, ScrollArea, Ui};
 use egui_plot::{Legend, Line, Plot};
 use glam::Vec3;
+use sinew::driver::Refusal;
 
 const RED: Color32 = Color32::from_rgb(200, 50, 40);
 
@@ -106,7 +107,14 @@ impl App {
 
     /// Whether something is to be told at length.
     pub(crate) fn has_news(&self) -> bool {
-        self.news.is_some() || self.state.refusal.is_some() || self.state.breakdown.is_some()
+        self.news.is_some() || self.refusal().is_some() || self.state.breakdown.is_some()
+    }
+
+    /// What was refused, but for mistakes of a scene that stand in its text.
+    fn refusal(&self) -> Option<&Refusal> {
+        let stands_there =
+            |refusal: &&Refusal| self.editor.is_some() && refusal.command == "load" && !refusal.mistakes.is_empty();
+        self.state.refusal.as_ref().filter(|refusal| !stands_there(refusal))
     }
 
     pub(crate) fn news_panel(&mut self, ui: &mut Ui) {
@@ -118,11 +126,14 @@ impl App {
                     self.go_to_breakdown();
                 }
             }
-            if let Some(refusal) = &state.refusal {
+            if let Some(refusal) = self.refusal().cloned() {
                 let anew = "takes the scene with this value, from its start";
                 if refusal.command == "set" && ui.button("Start anew with it").on_hover_text(anew).clicked() {
                     let sets = self.assignments();
-                    self.files.put_in(sets);
+                    match &mut self.editor {
+                        Some(editor) => editor.load(&sets),
+                        None => self.files.put_in(sets),
+                    }
                 }
                 ui.colored_label(RED, RichText::new(&refusal.reason).monospace());
             }

@@ -13,8 +13,8 @@ use sinew::scene::schema::OutputField;
 use sinew_pictures::render::Tools;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
 pub use tables::Curves;
+use web_time::Instant;
 
 /// The scene of a run in its folder.
 const SCENE: &str = "scene.ron";
@@ -131,7 +131,7 @@ impl Playback {
             Command::Release { .. } | Command::MoveGrab { .. } | Command::Lend(_) => {}
             _ => {
                 let reason = "this run is over: it can be looked at. Open its scene to pull at it and change it";
-                self.refusal = Some(Refusal { command: "run", reason: reason.into() });
+                self.refusal = Some(Refusal::new("run", reason));
             }
         }
         self.read(row);
@@ -164,13 +164,13 @@ impl Playback {
             Ok(bodies) => bodies,
             Err(error) => {
                 self.running = false;
-                self.refusal = Some(Refusal { command: "run", reason: error.to_string() });
+                self.refusal = Some(Refusal::new("run", error.to_string()));
                 self.state.bodies.clone()
             }
         };
-        let lacks = |field: OutputField| Refusal {
-            command: "field",
-            reason: format!("the run did not write {}: its scene's output.fields names what is written", field.array()),
+        let lacks = |field: OutputField| {
+            let named = "its scene's output.fields names what is written";
+            Refusal::new("field", format!("the run did not write {}: {named}", field.array()))
         };
         let has_none = |of: &dyn Fn(&sinew::driver::BodyState) -> bool| bodies.iter().all(of);
         if let Some(field) = self.field.filter(|_| has_none(&|body| body.values.is_empty())) {

@@ -6,6 +6,9 @@
 
 mod lent;
 mod pipelines;
+// what waits for the device, as nothing may in a page
+#[cfg(not(target_arch = "wasm32"))]
+mod read;
 mod target;
 mod triangles;
 mod uniform;
@@ -16,7 +19,7 @@ pub use uniform::{Look, Tissue};
 
 use lent::{Deform, Kept, KeptBody};
 use pipelines::Pipelines;
-use sinew_pictures::render::{Camera, Extent, Image, Plane, Scale};
+use sinew_pictures::render::{Camera, Extent, Plane, Scale};
 use target::{Maps, Target, depth};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::*;
@@ -44,7 +47,8 @@ pub struct Scene3d {
     device: Device,
     queue: Queue,
     pipelines: Pipelines,
-    deform: Deform,
+    /// Made when something is drawn from where it is on the device: not every device has kernels.
+    deform: Option<Deform>,
     kept: Option<Kept>,
     maps: Maps,
     target: Target,
@@ -55,9 +59,8 @@ impl Scene3d {
     pub fn new(device: Device, queue: Queue, size: (u32, u32)) -> Self {
         let pipelines = Pipelines::new(&device);
         let maps = Maps::new(&device, &pipelines);
-        let target = Target::new(&device, size);
-        let deform = Deform::new(&device);
-        Self { device, queue, pipelines, deform, kept: None, maps, target }
+        let target = Target::new(&device, size, pipelines.colour);
+        Self { device, queue, pipelines, deform: None, kept: None, maps, target }
     }
 
     /// Width and height of the picture (pixels).
@@ -69,7 +72,7 @@ impl Scene3d {
     pub fn resize(&mut self, size: (u32, u32)) -> bool {
         let changed = size != self.target.size;
         if changed {
-            self.target = Target::new(&self.device, size);
+            self.target = Target::new(&self.device, size, self.pipelines.colour);
         }
         changed
     }
@@ -92,7 +95,9 @@ impl Scene3d {
         });
         let mut encoder = self.device.create_command_encoder(&CommandEncoderDescriptor::default());
         let deformations = scene.surfaces.iter().filter_map(|surface| Some(surface.lent?.deformation));
-        self.deform.run(&self.queue, &mut encoder, kept, &deformations.collect::<Vec<_>>());
+        if let Some(deform) = &self.deform {
+            deform.run(&self.queue, &mut encoder, kept, &deformations.collect::<Vec<_>>());
+        }
         for (pipeline, view) in self.pipelines.maps.iter().zip(&self.maps.views) {
             let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
                 label: Some("shadows"),
@@ -127,21 +132,11 @@ impl Scene3d {
         if lent().next().is_none() {
             self.kept = None;
         } else if self.kept.as_ref().is_none_or(|kept| kept.key != scene.key) {
-            let keep = |(place, surface): (usize, &Surface<'_>)| self.deform.keep(&self.device, place, surface, camera);
+            let deform = self.deform.get_or_insert_with(|| Deform::new(&self.device));
+            let keep = |(place, surface): (usize, &Surface<'_>)| deform.keep(&self.device, place, surface, camera);
             let bodies = lent().enumerate().filter_map(keep);
             self.kept = Some(Kept { key: scene.key, bodies: bodies.collect() });
         }
-    }
-
-    /// Waits until all that was drawn is there; for who measures.
-    pub fn wait(&self) {
-        // a lost device has nothing to wait for
-        let _ = self.device.poll(PollType::wait_indefinitely());
-    }
-
-    /// The picture that was drawn last; none where the device is lost.
-    pub fn picture(&self) -> Option<Image> {
-        self.target.read(&self.device, &self.queue)
     }
 
     fn bind(&self, scene: &Scene<'_>, camera: &Camera) -> BindGroup {
@@ -150,8 +145,9 @@ impl Scene3d {
             self.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents, usage })
         };
         let size = glam::Vec2::new(self.target.size.0 as f32, self.target.size.1 as f32);
-        let view = buffer("view", &uniform::of(scene, camera, size), BufferUsages::UNIFORM);
-        let tissues = buffer("tissues", &uniform::tissues(&scene.look.tissues), BufferUsages::STORAGE);
+        let is_encoded = !self.pipelines.colour.is_srgb();
+        let view = buffer("view", &uniform::of(scene, camera, size, is_encoded), BufferUsages::UNIFORM);
+        let tissues = buffer("tissues", &uniform::tissues(&scene.look.tissues), BufferUsages::UNIFORM);
         let ramp = uniform::ramp(&scene.scale);
         let ramp = self.device.create_texture_with_data(
             &self.queue,

@@ -5,13 +5,14 @@ use wgpu::*;
 
 /// Samples a pixel.
 pub const SAMPLES: u32 = 4;
-/// What is drawn into: light, stored as screens take it.
-pub const COLOUR: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 /// How far things are.
 pub const DEPTH: TextureFormat = TextureFormat::Depth32Float;
 
 /// All pipelines, and how what they bind is laid out.
 pub struct Pipelines {
+    /// What is drawn into: light, stored as screens take it. Where a texture cannot be looked at in another format than
+    /// its own (WebGL) it is one of bytes, and the shader encodes light.
+    pub colour: TextureFormat,
     /// Of the scene.
     pub scene: BindGroupLayout,
     /// Of the maps of shadows.
@@ -48,13 +49,17 @@ struct Kind<'a> {
 impl Pipelines {
     /// On a device.
     pub fn new(device: &Device) -> Self {
+        let colour = match device.adapter_info().backend {
+            Backend::Gl => TextureFormat::Rgba8Unorm,
+            _ => TextureFormat::Rgba8UnormSrgb,
+        };
         let module = device.create_shader_module(include_wgsl!("scene.wgsl"));
         let scene = device.create_bind_group_layout(&BindGroupLayoutDescriptor {
             label: Some("scene"),
             entries: &[
                 entry(0, ShaderStages::VERTEX_FRAGMENT, buffer(BufferBindingType::Uniform)),
                 entry(1, ShaderStages::FRAGMENT, texture(TextureSampleType::Float { filterable: false })),
-                entry(2, ShaderStages::FRAGMENT, buffer(BufferBindingType::Storage { read_only: true })),
+                entry(2, ShaderStages::FRAGMENT, buffer(BufferBindingType::Uniform)),
             ],
         });
         let shadows = device.create_bind_group_layout(&BindGroupLayoutDescriptor {
@@ -63,6 +68,9 @@ impl Pipelines {
                 entry(0, ShaderStages::FRAGMENT, texture(TextureSampleType::Depth)),
                 entry(1, ShaderStages::FRAGMENT, texture(TextureSampleType::Depth)),
                 entry(2, ShaderStages::FRAGMENT, BindingType::Sampler(SamplerBindingType::Comparison)),
+                // the same maps as numbers: GLSL has no texture that is both compared and read
+                entry(3, ShaderStages::FRAGMENT, texture(TextureSampleType::Float { filterable: false })),
+                entry(4, ShaderStages::FRAGMENT, texture(TextureSampleType::Float { filterable: false })),
             ],
         });
         let layout = |groups: &[Option<&BindGroupLayout>]| {
@@ -73,11 +81,12 @@ impl Pipelines {
             })
         };
         let (one, two) = (layout(&[Some(&scene)]), layout(&[Some(&scene), Some(&shadows)]));
-        let make = |kind: Kind<'_>| make(device, &module, &kind);
+        let make = |kind: Kind<'_>| make(device, &module, &kind, colour);
         let usual =
             |name, entries| Kind { name, layout: &two, entries, corners: true, map: false, blend: false, depth: true };
         let map = |entry| make(Kind { layout: &one, map: true, ..usual("shadows", (entry, "shadow")) });
         Self {
+            colour,
             maps: [map("shadow_of_key"), map("shadow_of_sky")],
             behind: make(Kind { corners: false, depth: false, ..usual("behind", ("whole", "behind")) }),
             solid: make(usual("solid", ("corner", "solid"))),
@@ -101,7 +110,7 @@ fn texture(sample_type: TextureSampleType) -> BindingType {
     BindingType::Texture { sample_type, view_dimension: TextureViewDimension::D2, multisampled: false }
 }
 
-fn make(device: &Device, module: &ShaderModule, kind: &Kind<'_>) -> RenderPipeline {
+fn make(device: &Device, module: &ShaderModule, kind: &Kind<'_>, colour: TextureFormat) -> RenderPipeline {
     let corners = VertexBufferLayout {
         array_stride: size_of::<Corner>() as u64,
         step_mode: VertexStepMode::Vertex,
@@ -109,7 +118,7 @@ fn make(device: &Device, module: &ShaderModule, kind: &Kind<'_>) -> RenderPipeli
     };
     let buffers = [Some(corners)];
     let blend = kind.blend.then_some(BlendState::ALPHA_BLENDING);
-    let target = [Some(ColorTargetState { format: COLOUR, blend, write_mask: ColorWrites::ALL })];
+    let target = [Some(ColorTargetState { format: colour, blend, write_mask: ColorWrites::ALL })];
     // depth is 1 before the eye and 0 infinitely far, but in maps of shadows
     let nearer = if kind.map { CompareFunction::Less } else { CompareFunction::Greater };
     device.create_render_pipeline(&RenderPipelineDescriptor {

@@ -16,7 +16,7 @@ struct View {
     ground: vec4f,
     // of the bodies, and their diagonal
     middle: vec4f,
-    // least value, inverse span, whether there is a field, how wet tissue is
+    // least value, inverse span, whether light is encoded here, how wet tissue is
     range: vec4f,
     // strength of shadows, half the width of lines (pixels), whether the ground is seen, light of what is around
     shade: vec4f,
@@ -26,10 +26,13 @@ struct View {
 
 @group(0) @binding(0) var<uniform> view: View;
 @group(0) @binding(1) var ramp: texture_2d<f32>;
-@group(0) @binding(2) var<storage, read> tissues: array<vec4f>;
+@group(0) @binding(2) var<uniform> tissues: array<vec4f, 512>;
 @group(1) @binding(0) var key_map: texture_depth_2d;
 @group(1) @binding(1) var sky_map: texture_depth_2d;
 @group(1) @binding(2) var nearer: sampler_comparison;
+// the same maps as numbers
+@group(1) @binding(3) var key_depths: texture_2d<f32>;
+@group(1) @binding(4) var sky_depths: texture_2d<f32>;
 
 struct Corner {
     @location(0) position: vec3f,
@@ -59,7 +62,17 @@ const TABLE = 5u;
 const PANE = 6u;
 const TISSUE = 7u;
 
-fn finish_of(flags: u32) -> u32 { return extractBits(flags, 13u, 4u); }
+// Some of the bits of flags; `extractBits` is not in all of WebGL.
+fn bits(flags: u32, first: u32, count: u32) -> u32 { return (flags >> first) & ((1u << count) - 1u); }
+
+fn finish_of(flags: u32) -> u32 { return bits(flags, 13u, 4u); }
+
+// Light as it is stored: encoded here where the texture does not do so by itself.
+fn stored(light: vec4f) -> vec4f {
+    let low = max(light.rgb, vec3f(0));
+    let encoded = select(1.055 * pow(low, vec3f(1.0 / 2.4)) - 0.055, 12.92 * low, low < vec3f(0.0031308));
+    return select(light, vec4f(encoded, light.a), view.range.z > 0.5);
+}
 
 @vertex fn corner(it: Corner) -> Seen {
     let number = it.flags & 3u;
@@ -96,13 +109,13 @@ fn seed(number: i32, count: i32) -> vec2f {
 }
 
 // How far before a place (shares of the map's depth) that is which keeps a light from it, over a disc around it.
-fn gap(map: texture_depth_2d, place: vec2f, depth: f32, disc: f32) -> f32 {
+fn gap(map: texture_2d<f32>, place: vec2f, depth: f32, disc: f32) -> f32 {
     let size = vec2f(textureDimensions(map));
     var sum = 0.0;
     var count = 0.0;
     for (var number = 0; number < 9; number++) {
         let texel = clamp((place + disc * seed(number, 9)) * size, vec2f(0), size - 1.0);
-        let before = depth - textureLoad(map, vec2i(texel), 0);
+        let before = depth - textureLoad(map, vec2i(texel), 0).r;
         if before > 0.0 {
             sum += before;
             count += 1.0;
@@ -113,11 +126,11 @@ fn gap(map: texture_depth_2d, place: vec2f, depth: f32, disc: f32) -> f32 {
 
 // The share of a light that reaches a place. The light is a disc, seen under an angle whose tangent is `wide`: shadows
 // are sharp where they touch what casts them, and wide (shares of the map) far from it.
-fn reaches(map: texture_depth_2d, clip: mat4x4f, position: vec3f, wide: f32, least: f32, most: f32) -> f32 {
+fn reaches(map: texture_depth_2d, depths: texture_2d<f32>, clip: mat4x4f, position: vec3f, wide: f32, least: f32, most: f32) -> f32 {
     let at = (clip * vec4f(position, 1)).xyz;
     let depth = clamp(at.z, 0.0, 1.0);
     let place = vec2f(0.5 + 0.5 * at.x, 0.5 - 0.5 * at.y);
-    let disc = clamp(wide * gap(map, place, depth, most), least, most);
+    let disc = clamp(wide * gap(depths, place, depth, most), least, most);
     var sum = 0.0;
     for (var number = 0; number < 24; number++) {
         sum += textureSampleCompareLevel(map, nearer, place + disc * seed(number, 24), depth);
@@ -128,9 +141,9 @@ fn reaches(map: texture_depth_2d, clip: mat4x4f, position: vec3f, wide: f32, lea
 // The light left at a place of a surface, or on the ground: of the key light and of the sky.
 fn light_at(position: vec3f, normal: vec3f) -> vec2f {
     let off = position + normal * (0.012 * view.middle.w);
-    let key = reaches(key_map, view.key_clip, off, 0.14, 0.004, 0.03);
-    let sky = 0.5 * (reaches(sky_map, view.sky_clip, off, 0.5, 0.02, 0.03)
-        + reaches(sky_map, view.sky_clip, off, 1.0, 0.05, 0.08));
+    let key = reaches(key_map, key_depths, view.key_clip, off, 0.14, 0.004, 0.03);
+    let sky = 0.5 * (reaches(sky_map, sky_depths, view.sky_clip, off, 0.5, 0.02, 0.03)
+        + reaches(sky_map, sky_depths, view.sky_clip, off, 1.0, 0.05, 0.08));
     return mix(vec2f(1), vec2f(key, sky), view.shade.x);
 }
 
@@ -224,7 +237,7 @@ fn ink_of(it: Seen, width: vec3f) -> f32 {
     let edges = vec3f(f32((it.flags >> 2u) & 1u), f32((it.flags >> 3u) & 1u), f32((it.flags >> 4u) & 1u));
     let lines = (view.shade.y + 0.5 - it.share / max(width, vec3f(1e-9))) * edges;
     let ink = max(lines.x, max(lines.y, lines.z));
-    return clamp(ink, 0.0, 1.0) * f32(extractBits(it.flags, 5u, 8u)) / 255.0;
+    return clamp(ink, 0.0, 1.0) * f32(bits(it.flags, 5u, 8u)) / 255.0;
 }
 
 fn of_value(value: f32) -> vec3f {
@@ -257,7 +270,7 @@ fn side_of(it: Seen, front: bool) -> Side {
         let table = select(vec3f(0.8388, 0.8528, 0.8686), vec3f(0.045, 0.055, 0.07), view.shade.w < 0.5);
         colour = lit(side.eye, table, vec2f(mix(0.55, 1.0, light.x), light.y));
     } else if finish == TISSUE {
-        colour = tissue(side.eye, it.rest, extractBits(it.flags, 17u, 8u), light, pixel) * (1.0 - ink);
+        colour = tissue(side.eye, it.rest, bits(it.flags, 17u, 8u), light, pixel) * (1.0 - ink);
     } else {
         var value = of_value(it.value);
         if finish == BARED { value = mix(value, vec3f(0.7098, 0.3424, 0.2957), 0.72); }
@@ -265,7 +278,7 @@ fn side_of(it: Seen, front: bool) -> Side {
         // a field stays legible under the film
         colour += 0.35 * view.range.w * film(side.eye, light, 0.0);
     }
-    return vec4f(colour, 1);
+    return stored(vec4f(colour, 1));
 }
 
 // What is seen through: sheets, the shape at rest, planes from behind.
@@ -278,10 +291,10 @@ fn side_of(it: Seen, front: bool) -> Side {
     let finish = finish_of(it.flags);
     if finish == GHOST {
         let line = vec3f(0.2140, 0.2747, 0.3663);
-        return vec4f(line * view.shade.w, max(0.05, 0.75 * ink));
+        return stored(vec4f(line * view.shade.w, max(0.05, 0.75 * ink)));
     }
     let colour = select(vec3f(0.8388, 0.8528, 0.8686), of_value(it.value), finish == SHEET);
-    return vec4f(lit(side.eye, colour, vec2f(1)) * (1.0 - ink), 1.0 - pow(0.88, askew));
+    return stored(vec4f(lit(side.eye, colour, vec2f(1)) * (1.0 - ink), 1.0 - pow(0.88, askew)));
 }
 
 struct Behind {
@@ -295,7 +308,7 @@ struct Behind {
 }
 
 @fragment fn behind(it: Behind) -> @location(0) vec4f {
-    return vec4f(mix(view.bottom.rgb, view.top.rgb, it.at.y), 1);
+    return stored(vec4f(mix(view.bottom.rgb, view.top.rgb, it.at.y), 1));
 }
 
 struct Ground {

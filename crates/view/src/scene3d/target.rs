@@ -1,7 +1,6 @@
 //! The textures that are drawn into.
 
-use super::pipelines::{COLOUR, DEPTH, Pipelines, SAMPLES};
-use sinew_pictures::render::Image;
+use super::pipelines::{DEPTH, Pipelines, SAMPLES};
 use wgpu::*;
 
 /// Pixels along each side of the maps of shadows.
@@ -13,9 +12,8 @@ pub struct Target {
     pub size: (u32, u32),
     samples: TextureView,
     depth: TextureView,
-    picture: Texture,
     /// The picture as it is drawn into.
-    resolved: TextureView,
+    pub resolved: TextureView,
     /// The picture as others show it: bytes as screens take them.
     pub shown: TextureView,
 }
@@ -48,6 +46,8 @@ impl Maps {
                 BindGroupEntry { binding: 0, resource: BindingResource::TextureView(&views[0]) },
                 BindGroupEntry { binding: 1, resource: BindingResource::TextureView(&views[1]) },
                 BindGroupEntry { binding: 2, resource: BindingResource::Sampler(&sampler) },
+                BindGroupEntry { binding: 3, resource: BindingResource::TextureView(&views[0]) },
+                BindGroupEntry { binding: 4, resource: BindingResource::TextureView(&views[1]) },
             ],
         });
         Self { views, group }
@@ -55,22 +55,21 @@ impl Maps {
 }
 
 impl Target {
-    /// Of a size (pixels), each side at least 1.
-    pub fn new(device: &Device, (width, height): (u32, u32)) -> Self {
+    /// Of a size (pixels), each side at least 1, and a format.
+    pub fn new(device: &Device, (width, height): (u32, u32), colour: TextureFormat) -> Self {
         let most = device.limits().max_texture_dimension_2d;
         let size = (width.clamp(1, most), height.clamp(1, most));
         let whole = TextureViewDescriptor::default();
         let usage = TextureUsages::RENDER_ATTACHMENT;
         let of_picture = usage | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
-        let picture = texture(device, size, 1, COLOUR, of_picture);
-        let bytes = TextureViewDescriptor { format: Some(COLOUR.remove_srgb_suffix()), usage: None, ..whole.clone() };
+        let picture = texture(device, size, 1, colour, of_picture);
+        let bytes = TextureViewDescriptor { format: Some(colour.remove_srgb_suffix()), usage: None, ..whole.clone() };
         Self {
             size,
-            samples: texture(device, size, SAMPLES, COLOUR, usage).create_view(&whole),
+            samples: texture(device, size, SAMPLES, colour, usage).create_view(&whole),
             depth: texture(device, size, SAMPLES, DEPTH, usage).create_view(&whole),
             resolved: picture.create_view(&whole),
             shown: picture.create_view(&bytes),
-            picture,
         }
     }
 
@@ -87,32 +86,6 @@ impl Target {
             depth_stencil_attachment: Some(depth(&self.depth, 0.0)),
             ..RenderPassDescriptor::default()
         })
-    }
-
-    /// Brings the picture to the host, and waits for that; none where the device is lost.
-    pub fn read(&self, device: &Device, queue: &Queue) -> Option<Image> {
-        let (width, height) = self.size;
-        let row = (4 * width).next_multiple_of(COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = device.create_buffer(&BufferDescriptor {
-            label: Some("picture"),
-            size: u64::from(row * height),
-            usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor::default());
-        let layout = TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
-        encoder.copy_texture_to_buffer(
-            self.picture.as_image_copy(),
-            TexelCopyBufferInfo { buffer: &buffer, layout },
-            self.picture.size(),
-        );
-        queue.submit([encoder.finish()]);
-        buffer.map_async(MapMode::Read, .., |_| ());
-        device.poll(PollType::wait_indefinitely()).ok()?;
-        let bytes = buffer.get_mapped_range(..).ok()?;
-        let rows = bytes.chunks_exact(row as usize);
-        let pixels = rows.flat_map(|row| row[..4 * width as usize].chunks_exact(4).map(|p| [p[0], p[1], p[2]]));
-        Some(Image { width: width as usize, height: height as usize, pixels: pixels.collect() })
     }
 }
 

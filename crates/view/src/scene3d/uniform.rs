@@ -52,18 +52,18 @@ impl Tissue {
     }
 }
 
-/// The numbers of all tissues.
+/// How many tissues there can be: the number of one has 8 bits.
+const TISSUES: usize = 256;
+
+/// The numbers of all tissues; where none is given, of flesh.
 pub fn tissues(tissues: &[Tissue]) -> Vec<f32> {
     let one = |tissue: &Tissue| {
         let [r, g, b] = tissue.colour.map(linear);
         let [x, y, z] = tissue.scatter;
         [r, g, b, tissue.mottled, x, y, z, tissue.uneven]
     };
-    match tissues {
-        // a buffer cannot be empty
-        [] => one(&Tissue::of_name("")).to_vec(),
-        _ => tissues.iter().flat_map(one).collect(),
-    }
+    let flesh = Tissue::of_name("");
+    (0..TISSUES).flat_map(|number| one(tissues.get(number).unwrap_or(&flesh))).collect()
 }
 
 /// The colours of a scale in even steps (sRGB, bytes).
@@ -76,8 +76,8 @@ pub fn ramp(scale: &Scale) -> Vec<[u8; 4]> {
     (0..1024).map(colour).collect()
 }
 
-/// The numbers of `View` in `scene.wgsl`.
-pub fn of(scene: &Scene<'_>, camera: &Camera, size: Vec2) -> Vec<f32> {
+/// The numbers of `View` in `scene.wgsl`; `is_encoded`: whether the shader encodes light as screens take it.
+pub fn of(scene: &Scene<'_>, camera: &Camera, size: Vec2, is_encoded: bool) -> Vec<f32> {
     let Scene { look, bodies, .. } = scene;
     let diagonal = bodies.diagonal().max(f32::MIN_POSITIVE);
     let middle = if bodies.is_nothing() { Vec3::ZERO } else { bodies.middle() };
@@ -106,7 +106,7 @@ pub fn of(scene: &Scene<'_>, camera: &Camera, size: Vec2) -> Vec<f32> {
         plane,
         scene.ground.0.extend(scene.ground.1),
         middle.extend(diagonal),
-        Vec4::new(low, 1.0 / (high - low), 0.0, look.wet),
+        Vec4::new(low, 1.0 / (high - low), flag(is_encoded), look.wet),
         Vec4::new(look.shadows, 0.5 * look.scale, flag(look.ground), flag(!look.dark)),
         background[0],
         background[1],
