@@ -182,12 +182,15 @@ pub(super) fn start(assembly: &Assembly<'_>, world: &mut World) {
         if body.velocity == DVec3::ZERO && body.spin == DVec3::ZERO {
             continue;
         }
-        let mut query = world.query::<(&RestPosition, &Mass, &ConstrainedAxes, &mut DisplacementIncrement)>();
-        let Ok((rest, mass, axes, mut step)) = query.get_mut(world, parts.entity) else { continue };
+        let mut query =
+            world.query::<(&RestPosition, &Displacement, &Mass, &ConstrainedAxes, &mut DisplacementIncrement)>();
+        let Ok((rest, u, mass, axes, mut step)) = query.get_mut(world, parts.entity) else { continue };
         let total: f64 = (0..rest.0.len()).map(|row| mass.get(row)).sum();
-        let center: DVec3 = (0..rest.0.len()).map(|row| rest.0[row] * mass.get(row)).sum::<DVec3>() / total;
+        // where they start, which need not be where they are at rest
+        let place = |row: usize| rest.0[row] + u.vector(row);
+        let center: DVec3 = (0..rest.0.len()).map(|row| place(row) * mass.get(row)).sum::<DVec3>() / total;
         for row in 0..rest.0.len() {
-            let velocity = body.velocity + body.spin.cross(rest.0[row] - center);
+            let velocity = body.velocity + body.spin.cross(place(row) - center);
             let free = DVec3::from_array([0, 1, 2].map(|axis| f64::from(1 - (axes[row] >> axis & 1))));
             if mass.get(row) > 0.0 {
                 step.set_vector(row, velocity * free * time_step);

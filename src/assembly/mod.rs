@@ -121,8 +121,9 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     element_removal::spawn(assembly, world, diagnostics);
     observation::spawn(assembly, world, diagnostics);
     insert_laws(assembly.precision, world);
-    body_columns::start(assembly, world);
     start::deform(assembly, world, diagnostics);
+    // turning is about where bodies are then
+    body_columns::start(assembly, world);
     contacts::check(assembly, world, diagnostics);
     free_tools::check(assembly, world, diagnostics);
     surface_overlaps::check(assembly, world, diagnostics);

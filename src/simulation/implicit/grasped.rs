@@ -3,6 +3,7 @@
 use super::axes::{Axes, Motion};
 use super::formula::Formula;
 use super::newton::Workspace;
+use crate::components::Grasps;
 use crate::systems::{HeldNode, held_in_step, note_held};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -14,6 +15,10 @@ impl Grasped {
     /// Holds the free axes of nodes that closed tools hold, and says how far they have to go (m).
     pub fn hold(world: &mut World, axes: &Axes, motion: &mut Motion, to_go: &mut [f64]) -> Self {
         let mut all = Vec::new();
+        // a step asks for no memory for what is not there
+        if !axes.bodies.iter().any(|&body| world.get::<Grasps>(body).is_some()) {
+            return Self(all);
+        }
         for node in held_in_step(world) {
             let Some((_, range)) = axes.each().find(|(body, _)| *body == node.body) else { continue };
             let first = range.start + 3 * node.row;

@@ -9,7 +9,7 @@ const SWEEP: &str = r#"(
     scene: "block.ron",
     variants: Grid([
         ("materials.tissue.neo_hookean", ["Young(young: 3000, poisson: 0.45)", "Young(young: 9000, poisson: 0.3)"]),
-        ("loads.0.acceleration", ["(0, 0, -9.81)", "(0, 0, -4e4)", "(1, 0, -3)"]),
+        ("loads[0].acceleration", ["(0, 0, -9.81)", "(0, 0, -4e4)", "(1, 0, -3)"]),
         ("materials.tissue.damping", [5, 7.5]),
     ]),
     keep: ["top"],
@@ -39,7 +39,7 @@ fn parts_on_any_number_of_threads_are_the_whole_bit_for_bit_and_who_breaks_down_
     let (header, whole) = table(&place, "out/sweep/rows.csv");
     assert_eq!(
         header,
-        "variant,materials.tissue.neo_hookean,loads.0.acceleration,materials.tissue.damping,ended,time (s),\
+        "variant,materials.tissue.neo_hookean,loads[0].acceleration,materials.tissue.damping,ended,time (s),\
          top ux (m) at 0.05 s,top uy (m) at 0.05 s,top uz (m) at 0.05 s,top ux (m) at 0.1 s,top uy (m) at 0.1 s,\
          top uz (m) at 0.1 s"
     );

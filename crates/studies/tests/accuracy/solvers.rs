@@ -117,9 +117,10 @@ fn slow_loads_are_for_implicit_steps_and_ringing_is_not() {
     let [few, many] = [heavier, written].map(|row| row.measured().unwrap_or_else(|| panic!("{row:?}")).steps as f64);
     // half as many, but that a whole number of steps lies between two samples
     assert!(few < 0.6 * many && error(heavier) < 0.01, "{few} {many} {}", error(heavier));
-    // a twentieth of the time, seen on a busy machine
+    // both are good enough: which takes less is the machine's affair, and is said with the times of both
     let said = &pressed.findings.advice;
-    assert!(said.iter().any(|one| one.starts_with("Implicit steps pay")), "{said:?}");
+    let compares = |one: &String| one.starts_with("Implicit steps") && one.contains("of the time of");
+    assert!(said.iter().any(compares), "{said:?}");
 
     let free = studied(&block(0.02, "Step()", ""), 0.1);
     let (written, euler) = (row(&free, "as written"), row(&free, "implicit Euler 2 ms"));
@@ -156,7 +157,7 @@ fn what_implicit_steps_refuse_is_a_row_for_each_formula() {
     let implicit: Vec<Method> = choices.methods.iter().copied().filter(|method| method.is_implicit()).collect();
     assert_eq!(implicit.len(), 3, "{implicit:?}");
     let told = engine.predict(&Configuration { method: implicit[0], ..choices.base }).unwrap_err();
-    assert!(format!("{told:?}").contains("implicit steps cannot take part in contact"), "{told:?}");
+    assert!(format!("{told:?}").contains("the kinematic law corrects explicit steps"), "{told:?}");
 }
 
 /// The number of steps is known before; what they take is only as good as the machine is quiet.

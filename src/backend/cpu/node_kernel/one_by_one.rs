@@ -69,7 +69,7 @@ pub(super) struct OneNode<T> {
 
 impl<T: Scalar> OneNode<T> {
     pub(super) fn of(columns: &NodeColumns<'_, T>, row: usize) -> Self {
-        let three = |all: &[T]| [0, 1, 2].map(|i| all[3 * row + i]);
+        let three = |all: &[T]| [all[3 * row], all[3 * row + 1], all[3 * row + 2]];
         Self {
             mass: columns.inertia[row],
             axes: columns.axes[row],
