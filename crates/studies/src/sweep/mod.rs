@@ -131,7 +131,8 @@ impl Sweep {
             SceneFile::load_allowing(&scene, &[], allowed).map_err(|wrong| SweepError::Scene(Box::new(wrong)))?;
         let probes = &base.scene.probes;
         let columns = file.keep.iter().map(|name| match probes.get(name) {
-            Some(probe) => Ok(header(&probe.what)),
+            // of its table, less the time
+            Some(probe) => Ok(header(&probe.what).split_off(1)),
             None => {
                 let there: Vec<&str> = probes.keys().map(String::as_str).collect();
                 Err(SweepError::File(format!(
@@ -284,9 +285,13 @@ impl Sweep {
     /// Keeps what probes see now.
     fn ask(&self, simulation: &mut Simulation, row: &mut Done) -> Result<(), Error> {
         let mut seen = Vec::new();
-        for name in &self.file.keep {
+        for (name, columns) in self.file.keep.iter().zip(&self.columns) {
+            let numbers = simulation.probe(name)?;
+            if numbers.len() != columns.len() {
+                return Err(Error::Broken("a column of a probe"));
+            }
             // what is no number is none: of a gap where nothing is near, for instance
-            seen.extend(simulation.probe(name)?.into_iter().map(|number| number.is_finite().then_some(number)));
+            seen.extend(numbers.into_iter().map(|number| number.is_finite().then_some(number)));
         }
         row.kept.push(seen);
         Ok(())
