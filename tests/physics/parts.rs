@@ -112,6 +112,7 @@ fn scale_multiplies_lengths() {
 }
 
 #[test]
+#[ignore = "long"]
 fn what_a_part_brings_changes_while_it_runs_and_snapshots_hold_it() {
     for run in configurations() {
         let scene = placed("translate: (1, 0, 0)");

@@ -116,6 +116,7 @@ fn a_touch_is_the_mean_of_what_the_tool_felt() {
 
 /// A proxy at rest: the spring's force is what it feels, and hand and tissue are two springs in series.
 #[test]
+#[ignore = "long"]
 fn a_proxy_and_tissue_are_two_springs_in_series() {
     for run in configurations() {
         let pressed = |port: &str, place: DVec3| {

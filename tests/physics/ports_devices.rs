@@ -58,6 +58,7 @@ fn together(
 /// A hand presses into a block, holds, presses more, holds, leaves: while it holds the coupling gives nothing that it
 /// was not given, and with a proxy gives less than it takes in all.
 #[test]
+#[ignore = "long"]
 fn a_coupled_device_is_passive() {
     // on soft tissue, and on some that is stiffer than the coupling and the hand
     let modulus = |young: &'static str| move |run| (run, young);
