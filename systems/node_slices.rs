@@ -3,7 +3,7 @@
 
 use crate::backend::cpu::{Foreseen, IntegrationCoefficients};
 use crate::components::*;
-use crate::math::Scalar;
+use crate::math::{Scalar, vector_at};
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
 use glam::DVec3;
@@ -64,11 +64,6 @@ impl<'a, T: Scalar> NodeSlices<'a, T> {
 /// The vector of a row.
 pub(super) fn vector<T: Scalar>(all: &[T], row: usize) -> DVec3 {
     vector_at(all, 3 * row)
-}
-
-/// The vector that begins with a number.
-pub(super) fn vector_at<T: Scalar>(all: &[T], at: usize) -> DVec3 {
-    DVec3::new(all[at].to_f64(), all[at + 1].to_f64(), all[at + 2].to_f64())
 }
 
 /// Writes a vector from a number on, rounded.

@@ -18,6 +18,7 @@ pub use tensor::{Mat3, Sym3};
 
 // what the engine, the crates on top and tests see beside: no version keeps their names and types
 pub(crate) use polar::Polar;
+pub(crate) use real::vector_at;
 #[doc(hidden)]
 pub use real::{Task, refine_inverse_cbrt};
 #[doc(hidden)]

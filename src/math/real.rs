@@ -1,6 +1,7 @@
 //! The number types that pointwise physics is written over.
 
 use super::{elementary, trigonometry};
+use glam::DVec3;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -104,6 +105,11 @@ pub trait Scalar: Real + PartialOrd + Default + bytemuck::Pod {
     fn from_f64(value: f64) -> Self;
     /// Widens.
     fn to_f64(self) -> f64;
+}
+
+/// The vector that begins with a number of a column, in f64.
+pub(crate) fn vector_at<T: Scalar>(all: &[T], at: usize) -> DVec3 {
+    DVec3::new(all[at].to_f64(), all[at + 1].to_f64(), all[at + 2].to_f64())
 }
 
 /// Newton steps for y = x^(−1/3): the error e of a guess becomes 2e².

@@ -3,8 +3,9 @@
 use super::{MeetingColumns, SurfaceContacts};
 use crate::components::*;
 use crate::math::Scalar;
+pub(super) use crate::math::vector_at;
 use crate::systems::node_slices::NodeSlices;
-pub(super) use crate::systems::node_slices::{set_vector, vector, vector_at};
+pub(super) use crate::systems::node_slices::{set_vector, vector};
 use bevy_ecs::prelude::*;
 use std::ops::{Deref, DerefMut};
 

@@ -4,7 +4,7 @@ use crate::bits::{bits_do_not_depend, start};
 use crate::configurations::near;
 use crate::glue::bars;
 use crate::grasp::LIFTED;
-use crate::sutures::cubes;
+use crate::sutures::{cubes, pulled_apart};
 use glam::DVec3;
 use sinew::Simulation;
 use sinew::components::Precision;
@@ -19,13 +19,7 @@ fn solved(text: &str, step: &str) -> String {
 #[test]
 fn a_suture_tears_at_its_strength() {
     let (strength, stiffness) = (0.4, 50.0);
-    let text = cubes(
-        "",
-        "constraints: [Fixed(body: \"low\", on: All),
-            Prescribed(body: \"up\", on: All, displacement: (0, 0, 0.02), curve: Ramp(end: 1))],
-        output: (energies_every: 0.1),",
-        &format!("stiffness: {stiffness}, strength: {strength}"),
-    );
+    let text = pulled_apart(stiffness, strength);
     let mut simulation = start(&solved(&text, "0.004"), Precision::F64, 1);
     let mut most = 0.0_f64;
     while simulation.time() < 0.599 {

@@ -19,17 +19,22 @@ pub fn cubes(low: &str, rest: &str, stitch: &str) -> String {
     )
 }
 
-/// C27: a stitch that is pulled by a body that is moved tears at its strength, and what it stored is lost.
-#[test]
-fn a_suture_tears_at_its_strength_and_what_it_stored_is_booked() {
-    let (strength, stiffness) = (0.4, 50.0);
-    let text = cubes(
+/// Two cubes with a stitch, of which one is held and the other moves off by 20 mm within a second.
+pub fn pulled_apart(stiffness: f64, strength: f64) -> String {
+    cubes(
         "",
         "constraints: [Fixed(body: \"low\", on: All),
             Prescribed(body: \"up\", on: All, displacement: (0, 0, 0.02), curve: Ramp(end: 1))],
         output: (energies_every: 0.1),",
         &format!("stiffness: {stiffness}, strength: {strength}"),
-    );
+    )
+}
+
+/// C27: a stitch that is pulled by a body that is moved tears at its strength, and what it stored is lost.
+#[test]
+fn a_suture_tears_at_its_strength_and_what_it_stored_is_booked() {
+    let (strength, stiffness) = (0.4, 50.0);
+    let text = pulled_apart(stiffness, strength);
     for run in configurations() {
         let mut simulation = run.start(&text);
         let (mut most, mut last) = (0.0_f64, 0.0);

@@ -151,18 +151,25 @@ pub struct CheckArguments {
     pub json: bool,
 }
 
-/// How to run it.
-#[derive(Args)]
-pub struct HowArguments {
-    /// Where to run; auto takes a hardware GPU if there is one, else the CPU
-    #[arg(long, value_enum, default_value_t = BackendName::Auto)]
-    pub backend: BackendName,
+/// Which device, and which numbers.
+#[derive(Args, Clone)]
+pub struct DeviceArguments {
     /// Which GPU: best, hardware, software, or a part of its name
     #[arg(long, value_name = "NAME", default_value = "best")]
     pub gpu: String,
     /// The number type; f64 is the reference and runs on the CPU only
     #[arg(long, value_enum, default_value_t = PrecisionName::F32)]
     pub precision: PrecisionName,
+}
+
+/// How to run it.
+#[derive(Args)]
+pub struct HowArguments {
+    /// Where to run; auto takes a hardware GPU if there is one, else the CPU
+    #[arg(long, value_enum, default_value_t = BackendName::Auto)]
+    pub backend: BackendName,
+    #[command(flatten)]
+    pub device: DeviceArguments,
     /// CPU threads; 0 is one a core, or a single one for small bodies. Results are the same for any number
     #[arg(
         long,
@@ -245,8 +252,8 @@ impl AccuracyArguments {
     /// How the scene as written runs.
     pub fn options(&self) -> Options {
         let backend = if self.backend == BackendName::Gpu { BackendName::Gpu } else { BackendName::Cpu };
-        let (gpu, precision, threads) = (self.gpu.clone(), self.precision, self.threads);
-        HowArguments { backend, gpu, precision, threads, scheme: None }.options()
+        let device = DeviceArguments { gpu: self.gpu.clone(), precision: self.precision };
+        HowArguments { backend, device, threads: self.threads, scheme: None }.options()
     }
 }
 
@@ -326,12 +333,12 @@ impl HowArguments {
                 BackendName::Cpu => BackendChoice::Cpu,
                 BackendName::Gpu => BackendChoice::Gpu,
             },
-            precision: match self.precision {
+            precision: match self.device.precision {
                 PrecisionName::F32 => Precision::F32,
                 PrecisionName::F64 => Precision::F64,
             },
             threads: self.threads.into(),
-            gpu: Choice::parse(&self.gpu),
+            gpu: Choice::parse(&self.device.gpu),
             scheme: self.scheme.map(|name| match name {
                 SchemeName::Patches => Scheme::Patches,
                 SchemeName::TwoPass => Scheme::TwoPass,

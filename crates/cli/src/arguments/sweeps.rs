@@ -1,6 +1,6 @@
 //! The words of `sinew sweep`.
 
-use super::{BackendName, HowArguments, PrecisionName};
+use super::{BackendName, DeviceArguments, HowArguments};
 use clap::Args;
 use sinew::Options;
 use sinew_studies::sweep::Part;
@@ -26,12 +26,8 @@ pub struct SweepArguments {
     /// Where to run; auto is the CPU, for whoever has many variants has work for all cores
     #[arg(long, value_enum, default_value_t = BackendName::Cpu)]
     pub backend: BackendName,
-    /// Which GPU: best, hardware, software, or a part of its name
-    #[arg(long, value_name = "NAME", default_value = "best")]
-    pub gpu: String,
-    /// The number type; f64 is the reference and runs on the CPU only
-    #[arg(long, value_enum, default_value_t = PrecisionName::F32)]
-    pub precision: PrecisionName,
+    #[command(flatten)]
+    pub device: DeviceArguments,
     /// Let the scene name files outside its own folder
     #[arg(long)]
     pub allow_outside: bool,
@@ -44,8 +40,7 @@ impl SweepArguments {
     /// How each variant runs.
     pub fn options(&self) -> Options {
         let backend = if self.backend == BackendName::Gpu { BackendName::Gpu } else { BackendName::Cpu };
-        let (gpu, precision) = (self.gpu.clone(), self.precision);
-        HowArguments { backend, gpu, precision, threads: 1, scheme: None }.options()
+        HowArguments { backend, device: self.device.clone(), threads: 1, scheme: None }.options()
     }
 
     /// How many run at once.

@@ -3,7 +3,7 @@
 use super::integration_coefficients::{Foreseen, IntegrationCoefficients};
 use super::own_rows::OwnRows;
 use crate::components::{GROUP_ROWS, WORK_NUMBERS};
-use crate::math::{Scalar, SimdScalar};
+use crate::math::{Scalar, SimdScalar, vector_at};
 use glam::DVec3;
 use std::sync::atomic::AtomicU32;
 
@@ -107,14 +107,10 @@ impl<T: SimdScalar> NodeColumns<'_, T> {
     }
 }
 
-fn vector_at<T: Scalar>(all: &[T], row: usize) -> DVec3 {
-    DVec3::new(all[3 * row].to_f64(), all[3 * row + 1].to_f64(), all[3 * row + 2].to_f64())
-}
-
 impl<T: Scalar> NodeColumns<'_, T> {
     /// Displacement of one of these nodes (m).
     pub fn displacement(&self, row: usize) -> DVec3 {
-        vector_at(self.u, row)
+        vector_at(self.u, 3 * row)
     }
 
     /// Where one of these nodes is (m).
@@ -124,7 +120,7 @@ impl<T: Scalar> NodeColumns<'_, T> {
 
     /// Where `integrate` will take one of these nodes, from what its loads are by now.
     pub fn foresee(&self, coefficients: &IntegrationCoefficients<f64>, row: usize) -> Foreseen {
-        let vector = |all: &[T]| vector_at(all, row);
+        let vector = |all: &[T]| vector_at(all, 3 * row);
         let force = self.external.as_deref().map_or(DVec3::ZERO, vector) - vector(self.internal);
         let damping = self.damping.map_or(0.0, |all| all[row].to_f64());
         coefficients.foresee(self.inertia[row].to_f64(), damping, self.axes[row], vector(self.step), force)

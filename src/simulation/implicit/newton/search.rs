@@ -67,11 +67,12 @@ impl Newton<'_, '_> {
         let begins = self.sums.dot(&self.space.p, &self.space.g);
         let touches = self.trial.world.resource::<Clock>().springs.is_some();
         let moves = self.moves();
-        let (mut share, mut bracket) = (1.0, Bracket::from(begins));
+        let (mut share, mut bracket, mut halvings) = (1.0, Bracket::from(begins), 0);
         for look in 0..=MOST_LOOKS {
             if look > MOST_HALVINGS && !bracket.crosses() {
                 break;
             }
+            halvings = look;
             let Workspace { w, from, p, to_go, .. } = &mut *self.space;
             for axis in 0..w.len() {
                 w[axis] = from[axis] + share * (p[axis] + to_go[axis]);
@@ -96,7 +97,7 @@ impl Newton<'_, '_> {
         let Workspace { w, from, .. } = &mut *self.space;
         w.copy_from_slice(from);
         Err(Lost::Because(format!(
-            "no descent after {MOST_HALVINGS} halvings of a Newton step, at a residual of {size:.3e} N"
+            "no descent after {halvings} halvings of a Newton step, at a residual of {size:.3e} N"
         )))
     }
 
