@@ -1,15 +1,27 @@
 //! `sinew view` starts the viewer beside it, or says how to get it.
 #![cfg(unix)]
 
+use std::io::ErrorKind;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::{Command, Output};
+use std::time::Duration;
 
 /// A copy of the command in a folder, where nothing else is found.
 fn view(folder: &Path) -> Output {
     let own = folder.join("sinew");
     std::fs::copy(env!("CARGO_BIN_EXE_sinew"), &own).unwrap();
-    Command::new(own).args(["view", "cube.ron", "--run"]).env("PATH", folder.join("nothing")).output().unwrap()
+    let mut command = Command::new(own);
+    command.args(["view", "cube.ron", "--run"]).env("PATH", folder.join("nothing"));
+    // a test beside this one may just have begun a program, which has what was written open until it runs
+    loop {
+        match command.output() {
+            Err(error) if error.kind() == ErrorKind::ExecutableFileBusy => {
+                std::thread::sleep(Duration::from_millis(20))
+            }
+            ended => return ended.unwrap(),
+        }
+    }
 }
 
 #[test]
