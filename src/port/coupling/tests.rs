@@ -1,0 +1,101 @@
+
+use super::*;
+
+const TICK: f64 = 1e-3;
+const DAMPING: f64 = 1.0;
+
+/// A mass with a damper under a force that is held for a tick, exactly: place and velocity after it.
+fn tick(mass: f64, (x, v): (f64, f64), force: f64) -> (f64, f64) {
+    let (rest, rate) = (force / DAMPING, DAMPING / mass);
+    let decay = (-rate * TICK).exp();
+    (x + rest * TICK + (v - rest) * (1.0 - decay) / rate, rest + (v - rest) * decay)
+}
+
+/// Whether the swings of a device, moved out of rest, are larger after some seconds.
+fn grows(mass: f64, mut force: impl FnMut(f64, f64, f64) -> f64) -> bool {
+    let (mut state, mut late) = ((1e-3, 0.0), 0.0_f64);
+    for step in 0..16_000 {
+        state = tick(mass, state, force(state.0, state.1, f64::from(step) * TICK));
+        if step >= 8000 {
+            late = late.max(state.0.abs());
+        }
+    }
+    assert!(late.is_finite());
+    late > 1e-3
+}
+
+#[test]
+fn the_largest_stiffness_is_that_of_the_sampled_device() {
+    for (mass, ticks) in [0.02, 0.1, 0.3].into_iter().flat_map(|mass| [0, 1, 2, 5].map(|ticks| (mass, ticks))) {
+        let unstable = |stiffness: f64| {
+            let mut past = vec![1e-3; ticks];
+            grows(mass, |x, _, _| {
+                past.push(x);
+                (-stiffness * past.remove(0)).clamp(-1e3, 1e3)
+            })
+        };
+        let (mut low, mut high) = (10.0, 1e4);
+        assert!(!unstable(low) && unstable(high));
+        while high - low > 1e-3 * low {
+            let middle = 0.5 * (low + high);
+            if unstable(middle) { high = middle } else { low = middle }
+        }
+        let share = low / VirtualCoupling::largest_stiffness(DAMPING, TICK, ticks as f64 * TICK);
+        let most = if mass < 0.1 { 1.05 } else { 1.01 };
+        assert!(share > 0.999 && share < most, "{mass} kg, {ticks} ticks: {low} N/m, {share} of the formula");
+    }
+}
+
+/// A wall: the proxy stays. At .9 of the bound the device comes to rest at it, at 1.2 it never does.
+#[test]
+fn against_a_wall_the_coupling_settles_below_the_bound_and_not_above() {
+    let touch = Touch { sequence: 1, in_contact: true, ..Touch::default() };
+    let bound = VirtualCoupling::largest_stiffness(DAMPING, TICK, 0.0);
+    for (share, expected) in [(0.9, false), (1.2, true)] {
+        let mut coupling = VirtualCoupling::new(share * bound, 0.0, 100.0);
+        (coupling.fastest, coupling.decay) = (1e3, f64::INFINITY);
+        let swings = grows(0.1, |x, v, t| coupling.force(&touch, DVec3::X * x, DVec3::X * v, t).x);
+        assert_eq!(swings, expected, "at {share} of {bound} N/m");
+    }
+}
+
+/// The engine pauses: the force goes to 0, and nowhere by more than its slew.
+#[test]
+fn when_no_touch_comes_any_more_the_force_decays_without_a_jump() {
+    let mut coupling = VirtualCoupling::new(500.0, 0.5, 2.0);
+    let mut touch = Touch { place: DVec3::X * 2e-3, velocity: DVec3::X * 0.1, ..Touch::default() };
+    let mut last = coupling.force(&touch, DVec3::ZERO, DVec3::ZERO, 0.0);
+    assert_eq!(last, DVec3::ZERO, "before the first touch there is none");
+    let mut forces = Vec::new();
+    for step in 1..3000_u32 {
+        // nothing from .5 to 1.5 s, and then from elsewhere
+        match step {
+            ..500 => touch.sequence += 1,
+            1500.. => touch = Touch { sequence: touch.sequence + 1, place: DVec3::new(0.0, -0.1, 0.0), ..touch },
+            _ => {}
+        }
+        let force = coupling.force(&touch, DVec3::ZERO, DVec3::X * 0.1, f64::from(step) * TICK);
+        let slew = coupling.stiffness * coupling.fastest * TICK;
+        assert!((force - last).length() <= slew * (1.0 + 1e-12), "{step}: from {last} to {force}");
+        assert!(force.length() <= 2.0 * (1.0 + 1e-12), "{step}: {force}");
+        last = force;
+        forces.push(force);
+    }
+    // K x − B v
+    assert!((forces[490].x - (500.0 * 2e-3 - 0.05)).abs() < 1e-12, "{}", forces[490]);
+    // for 2 ms as it was (carried on by .1 mm), half of it after 27, nothing after 52
+    let held = 500.0 * 2.1e-3 - 0.05;
+    assert!((forces[500].x - held).abs() < 1e-12 && (forces[525].x - 0.5 * held).abs() < 1e-9, "{:?}", forces[525]);
+    assert!(forces[551..1498].iter().all(|force| *force == DVec3::ZERO), "{}", forces[552]);
+    assert!((forces[2900] + DVec3::Y * 2.0).length() < 3e-3, "{}", forces[2900]);
+}
+
+#[test]
+fn a_device_gets_numbers_whatever_comes() {
+    let mut coupling = VirtualCoupling::new(500.0, 0.5, 2.0);
+    for (place, touched) in [(f64::NAN, 1.0), (0.0, f64::INFINITY), (f64::MAX, -f64::MAX)] {
+        let touch = Touch { sequence: 1, place: DVec3::splat(touched), ..Touch::default() };
+        let force = coupling.force(&touch, DVec3::splat(place), DVec3::ZERO, 1.0);
+        assert!(force.is_finite() && force.length() <= 2.0 + 1e-9, "{force}");
+    }
+}
