@@ -19,7 +19,7 @@ use crate::components::*;
 use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 pub use in_step::ContactStep;
 use in_step::ToolInStep;
 use smallvec::SmallVec;
@@ -107,16 +107,25 @@ impl NodeSystem for ToolContacts {
     fn act<T: SimdScalar>(&self, step: &ContactStep, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
         let Some(touches) = nodes.touches.take() else { return };
         let own = places_within(&self.rows, nodes.first, nodes.rows());
-        for (place, (&row, &mask)) in self.rows[own.clone()].iter().zip(&self.masks[own]).enumerate() {
-            let values = &mut touches.values[touches.numbers * place..touches.numbers * (place + 1)];
-            let row = row as usize - nodes.first;
+        let kept = touches.values.chunks_exact_mut(touches.numbers.max(1));
+        for ((&row, values), listed) in self.rows[own.clone()].iter().zip(kept).zip(own) {
+            let (row, mask) = (row as usize - nodes.first, self.masks[listed] & self.all());
             match &step.springs {
                 Some(springs) if springs.forces == SpringForces::Noted => {
                     self.press((step, springs), (row, mask), nodes, values);
                 }
                 // the solver finds them apart
                 Some(_) => {}
-                None => self.touch(step, row, mask, nodes, values),
+                None => {
+                    let moved = nodes.displacement(row);
+                    // most nodes are far from all tools, and were: nothing is read or written there but that
+                    if step.may_be_near(mask, Vec3::from_array(self.at_rest[listed]) + moved.as_vec3())
+                        || self.is_touched(values)
+                    {
+                        let place = nodes.rest[row] - self.reference + moved;
+                        self.touch(step, (row, step.near(mask, place), place), nodes, values);
+                    }
+                }
             }
         }
         nodes.touches = Some(touches);
@@ -124,23 +133,26 @@ impl NodeSystem for ToolContacts {
 }
 
 impl ToolContacts {
-    /// What tools do to one node.
+    /// Whether tools touched a node in the last step, by its numbers.
+    #[inline(always)]
+    fn is_touched<T: SimdScalar>(&self, values: &[T]) -> bool {
+        let numbers = self.numbers_a_tool();
+        let (mut state, mut touched) = (3, false);
+        while let Some(&of_tool) = values.get(state) {
+            touched |= of_tool != T::default();
+            state += numbers;
+        }
+        touched
+    }
+
+    /// What tools, those near as bits, do to one node at a place (m, from the reference).
     fn touch<T: SimdScalar>(
         &self,
         step: &ContactStep,
-        row: usize,
-        mask: u32,
+        (row, near, place): (usize, u32, DVec3),
         nodes: &mut NodeColumns<'_, T>,
         values: &mut [T],
     ) {
-        let place = nodes.rest[row] - self.reference + nodes.displacement(row);
-        let near = step.near(mask & self.all(), place);
-        let touched = |of_tool: &[T]| of_tool[3] != T::default();
-        // most nodes are far from all tools, and were: nothing is read or written there but that
-        let touched = values.chunks_exact(self.numbers_a_tool()).any(touched);
-        if near == 0 && !touched {
-            return;
-        }
         let mut stuck = 0_u32;
         for (tool, of_tool) in values.chunks_exact_mut(self.numbers_a_tool()).enumerate() {
             stuck |= u32::from(of_tool[3] == T::from_f64(STICKS)) << tool;
@@ -151,10 +163,18 @@ impl ToolContacts {
         }
         let Foreseen { before, step: predicted, free, to_force } = nodes.foresee(&step.coefficients, row);
         let at = (place, before, predicted);
-        let near = (0..self.tools.len()).filter(|tool| near >> tool & 1 == 1);
-        let mut all = Touching::new();
-        all.extend(near.filter_map(|tool| self.predict(step, tool, at, stuck >> tool & 1 == 1)));
-        let d = predicted + self.push_apart(step, &mut all, (place, predicted), free);
+        let (mut one, mut several);
+        let all = if near.is_power_of_two() {
+            let tool = near.trailing_zeros() as usize;
+            one = self.predict(step, tool, at, stuck >> tool & 1 == 1);
+            one.as_mut_slice()
+        } else {
+            several = Touching::new();
+            let near = (0..self.tools.len()).filter(|tool| near >> tool & 1 == 1);
+            several.extend(near.filter_map(|tool| self.predict(step, tool, at, stuck >> tool & 1 == 1)));
+            &mut several[..]
+        };
+        let d = predicted + self.push_apart(step, all, (place, predicted), free);
         let work_factor = step.coefficients.work_factor;
         let mut sum = DVec3::ZERO;
         for touch in all.iter().filter(|touch| touch.push > 0.0) {
@@ -246,7 +266,10 @@ impl ToolContacts {
         free: DVec3,
     ) -> DVec3 {
         let mut sum = DVec3::ZERO;
-        for turn in 0..TURNS {
+        // one even tool at a node that may go anywhere: the first turn finds it all
+        let is_exact =
+            matches!(all, [one] if step.tools[one.tool].is_even && one.plane.is_none() && free == DVec3::ONE);
+        for turn in 0..if is_exact { 1 } else { TURNS } {
             let mut most = 0.0_f64;
             for touch in all.iter_mut() {
                 if turn > 0 && !touch.springs {

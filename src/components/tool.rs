@@ -195,6 +195,10 @@ pub struct ToolContacts {
     pub rows: Vec<u32>,
     /// Of each of them, which tools: bit i is tool i.
     pub masks: Vec<u32>,
+    /// Where each of them is at rest (m, from the reference): rounded, side by side, to see at once who is far off.
+    pub at_rest: Vec<[f32; 3]>,
+    /// How far the farthest of these is from the reference (m).
+    pub extent: f64,
     /// Length of an edge of the surface (m): who is farther off cannot be there within a step.
     pub edge: f64,
     /// How fast nodes that are inside a tool at the start are pushed out (m/s).

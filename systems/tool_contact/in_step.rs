@@ -2,7 +2,7 @@
 
 use crate::backend::cpu::IntegrationCoefficients;
 use crate::components::*;
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Vec3};
 
 /// What a step needs.
 pub struct ContactStep {
@@ -18,6 +18,9 @@ pub struct ContactStep {
     pub(super) tools: [ToolInStep; ToolContacts::MOST],
 }
 
+/// The most by which rounding to f32 moves what is so far off, and more.
+const ROUNDING: f64 = 1e-5;
+
 /// A tool in a step.
 #[derive(Clone, Copy)]
 pub(super) struct ToolInStep {
@@ -27,23 +30,82 @@ pub(super) struct ToolInStep {
     pub earlier: Pose,
     /// How these differ.
     pub change: Pose,
-    /// Middle and radius of a ball (m) with all that the tool may touch; none of a plane.
-    pub ball: Option<(DVec3, f64)>,
+    /// What all that it may touch lies within.
+    bound: Bound,
+    rounded: RoundedBound,
+    /// Whether it is a plane that does not turn: the same normal and the same step everywhere.
+    pub is_even: bool,
+}
+
+/// What all that a tool may touch lies within.
+#[derive(Clone, Copy)]
+pub(super) enum Bound {
+    /// A ball: its middle (m), and its radius squared (m²).
+    Ball(DVec3, f64),
+    /// What is below a height (m) along a unit vector.
+    Below(DVec3, f64),
+}
+
+impl Bound {
+    #[inline(always)]
+    fn holds(&self, place: DVec3) -> bool {
+        match *self {
+            Self::Ball(center, radius_squared) => center.distance_squared(place) <= radius_squared,
+            Self::Below(normal, height) => normal.dot(place) <= height,
+        }
+    }
+
+    /// One around it for rounded places of nodes that are so far from the reference at rest (m).
+    fn around(&self, extent: f64) -> RoundedBound {
+        match *self {
+            Self::Ball(center, radius_squared) => {
+                let radius = (radius_squared.sqrt() + ROUNDING * (center.length() + extent)) * (1.0 + ROUNDING);
+                RoundedBound::Ball(center.as_vec3(), (radius * radius) as f32)
+            }
+            Self::Below(normal, height) => {
+                RoundedBound::Below(normal.as_vec3(), (height + ROUNDING * (height.abs() + extent)) as f32)
+            }
+        }
+    }
+}
+
+/// The same, for rounded places, and a little larger.
+#[derive(Clone, Copy)]
+enum RoundedBound {
+    Ball(Vec3, f32),
+    Below(Vec3, f32),
+}
+
+impl RoundedBound {
+    #[inline(always)]
+    fn holds(&self, place: Vec3) -> bool {
+        match *self {
+            Self::Ball(center, radius_squared) => center.distance_squared(place) <= radius_squared,
+            Self::Below(normal, height) => normal.dot(place) - ROUNDING as f32 * place.abs().element_sum() <= height,
+        }
+    }
 }
 
 impl ContactStep {
+    /// Whether any of some tools, as bits, may touch a node, by its place (m, from the reference) as it is in f32.
+    #[inline(always)]
+    pub(super) fn may_be_near(&self, tools: u32, place: Vec3) -> bool {
+        let (mut left, mut near) = (tools, false);
+        while left != 0 {
+            near |= self.tools[left.trailing_zeros() as usize].rounded.holds(place);
+            left &= left - 1;
+        }
+        near
+    }
+
     /// Which of some tools may touch a node at a place (m, from the reference); both as bits.
-    #[inline]
+    #[inline(always)]
     pub(super) fn near(&self, tools: u32, place: DVec3) -> u32 {
         let (mut left, mut near) = (tools, 0);
         while left != 0 {
             let tool = left.trailing_zeros();
             left &= left - 1;
-            let is_far = match self.tools[tool as usize].ball {
-                Some((center, radius)) => center.distance_squared(place) > radius * radius,
-                None => false,
-            };
-            near |= u32::from(!is_far) << tool;
+            near |= u32::from(self.tools[tool as usize].bound.holds(place)) << tool;
         }
         near
     }
@@ -54,16 +116,21 @@ impl ToolContacts {
     pub(super) fn in_step(&self, clock: &Clock, signals: &Signals) -> ContactStep {
         let values = signals.values();
         let nowhere = Pose { rotation: DMat3::ZERO, at: DVec3::ZERO };
-        let none = ToolInStep { pose: nowhere, earlier: nowhere, change: nowhere, ball: None };
+        let bound = Bound::Ball(DVec3::ZERO, 0.0);
+        let rounded = bound.around(0.0);
+        let none = ToolInStep { pose: nowhere, earlier: nowhere, change: nowhere, bound, rounded, is_even: false };
         let mut tools = [none; ToolContacts::MOST];
         for (tool, contact) in tools.iter_mut().zip(&self.tools) {
             let [pose, change] = [0, 3].map(|slot| Pose::of_slots(&values[contact.signal + slot..]));
-            let ball = contact.geometry.bounding_sphere();
             let earlier = pose.less(&change);
-            // of one whose way is looked at, the ball goes along
-            let goes = |center| if contact.swept > 0.0 { change.place(center).length() } else { 0.0 };
-            let ball = ball.map(|(center, radius)| (pose.place(center), radius + self.edge + goes(center)));
-            *tool = ToolInStep { pose, earlier, change, ball };
+            // of one whose way is looked at, the bound goes along
+            let reach = |center| self.edge + if contact.swept > 0.0 { change.place(center).length() } else { 0.0 };
+            let bound = match contact.geometry.bounding_sphere() {
+                Some((center, radius)) => Bound::Ball(pose.place(center), (radius + reach(center)).powi(2)),
+                None => Bound::Below(pose.rotation.z_axis, pose.rotation.z_axis.dot(pose.at) + reach(DVec3::ZERO)),
+            };
+            let is_even = matches!(bound, Bound::Below(..)) && change.rotation == DMat3::ZERO;
+            *tool = ToolInStep { pose, earlier, change, bound, rounded: bound.around(self.extent), is_even };
         }
         ContactStep {
             coefficients: IntegrationCoefficients::of(clock),
@@ -86,5 +153,43 @@ impl ToolContacts {
             Some(_) => 0.1 * self.edge,
             None => self.settling * clock.time_step,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rounded places of all that a bound holds are within the rounded one, near the surface and far from the
+    /// reference; and that is not much larger.
+    #[test]
+    fn rounding_leaves_nobody_out() {
+        let mut random = fastrand::Rng::with_seed(3);
+        let mut vector = |size: f64| size * (2.0 * DVec3::new(random.f64(), random.f64(), random.f64()) - 1.0);
+        let (mut held, mut left_out) = (0, 0);
+        for turn in 0..20_000 {
+            let extent = [0.01, 1.0, 300.0][turn % 3];
+            let (center, rest) = (vector(extent), vector(extent / 2.0));
+            let (direction, away) = (vector(1.0).normalize(), vector(1.0).x);
+            // who is on the surface, or off by as much as rounding does
+            let place = center + direction * (0.3 + 1e-6 * away * extent);
+            let rounded = rest.as_vec3() + (place - rest).as_vec3();
+            let normal = vector(1.0).normalize();
+            let below = Bound::Below(normal, normal.dot(center + direction * 0.3));
+            for bound in [Bound::Ball(center, 0.09), below] {
+                if bound.holds(place) {
+                    held += 1;
+                    assert!(bound.around(extent).holds(rounded), "{place} of {extent}");
+                }
+                let far = rounded
+                    + (1e-4 * (0.3 + 4.0 * extent)) as f32
+                        * match bound {
+                            Bound::Ball(..) => direction.as_vec3(),
+                            Bound::Below(normal, _) => normal.as_vec3(),
+                        };
+                left_out += i32::from(!bound.around(extent).holds(far));
+            }
+        }
+        assert!(held > 10_000 && left_out == 40_000, "{held}, {left_out}");
     }
 }

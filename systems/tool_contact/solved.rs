@@ -86,10 +86,10 @@ impl ToolContacts {
     ) {
         let place = nodes.rest[row] - self.reference + nodes.displacement(row);
         let near = step.near(mask & self.all(), place);
-        let numbers = self.numbers_a_tool();
-        if near == 0 && values.chunks_exact(numbers).all(|of_tool| of_tool[3] == T::default()) {
+        if near == 0 && !self.is_touched(values) {
             return;
         }
+        let numbers = self.numbers_a_tool();
         let at = At {
             place,
             step: DVec3::from_array([0, 1, 2].map(|i| nodes.step[3 * row + i].to_f64())),
