@@ -67,8 +67,8 @@ pub struct Extreme {
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Notice {
-    /// The guard: `energy` or `hourglass`; `overlap` for bodies that are where others are;
-    /// `implicit_step` for a residual that an implicit step left.
+    /// The guard: `energy` or `hourglass`, `contact` for springs that make energy; `overlap` for bodies that are where
+    /// others are; `implicit_step` for a residual that an implicit step left.
     pub criterion: String,
     /// The part that it is about, or the two bodies; all bodies when empty.
     pub part: String,

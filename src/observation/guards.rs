@@ -156,6 +156,9 @@ pub(super) fn check_balance(
     remember(&mut memory, &seen, world);
     let (made, held) = balance(&mut memory, &seen, settings, last, world);
     hourglass(&mut memory, &seen, settings, world);
+    if let Some(made) = super::contacts::made_by_springs(world)? {
+        rattling(&mut memory, made, settings, world);
+    }
     let (scale, rounding, passed) = (memory.scale, memory.rounding, memory.in_doubt.is_none());
     world.insert_resource(memory);
     let stop = settings.limits.energy.stop;
@@ -274,6 +277,24 @@ pub fn begin(world: &mut World) -> Result<(), Error> {
     memory.rounding = rounding.of_energy(&seen.reach);
     world.insert_resource(rounding);
     Ok(())
+}
+
+/// Warns of springs of contact that make energy (J): what touches and lets go again and again may get more back from
+/// them than it gave.
+fn rattling(memory: &mut GuardMemory, made: f64, settings: &GuardSettings, world: &World) {
+    let limit = settings.limits.energy.warn;
+    let share = (made - memory.rounding) / memory.scale;
+    if settings.limits.off.contains(&Guard::Energy) || memory.scale <= 0.0 || share.is_nan() || share <= limit {
+        return;
+    }
+    let message = format!(
+        "springs of contact gave back {:.1} % of the largest energy so far more than they got ({:.1} % are a warning, \
+         guards.energy.warn): what begins inside is pushed out, or something rattles; a smaller `share`, `damping` of the \
+         law, a smaller integration.safety, or `law: Kinematic`, which makes none",
+        100.0 * share,
+        100.0 * limit
+    );
+    warn(memory, world, "contact", "", share, limit, message);
 }
 
 fn hourglass(memory: &mut GuardMemory, seen: &Sample, settings: &GuardSettings, world: &World) {

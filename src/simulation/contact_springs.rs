@@ -17,9 +17,16 @@ struct OnBody<'a> {
     name: &'a str,
 }
 
+/// The largest share of springs that does not throw out in one step what has come in in one.
+const FIRM: f64 = 1.0;
+
 /// Refuses springs that the step is too large for. With k = f/(κ D) the frequency of all is bounded by ω² ≤ ω_e² + Σ
 /// f/Δt² (Weyl), so that at the share s of the stable step f ≤ 4 (1 − s²); damping that follows a step late leaves
 /// (√(1 + ζ²) − ζ)² of that.
+///
+/// That holds for what touches all the time. A node that comes in with a step d and ends δ ≤ d inside goes on by
+/// d − f δ − 2ζ√f d: not back out at once, whatever δ, where f + 2ζ√f ≤ 1, which is f ≤ (√(1 + ζ²) − ζ)². Else it may
+/// leave faster than it came, and what rattles makes energy.
 pub(super) fn check(scene: &Scene, stability: &Stability, diagnostics: &mut Diagnostics) {
     let share = match (scene.integration.step, stability.limit) {
         (Some(step), Some(limit)) => step / limit,
@@ -51,7 +58,7 @@ impl OnBody<'_> {
     fn check(&self, share: f64, diagnostics: &mut Diagnostics) {
         let Some(&first) = self.contacts.first() else { return };
         let late = (1.0 + self.damping * self.damping).sqrt() - self.damping;
-        let most = 4.0 * (1.0 - share * share).max(0.0) * late * late;
+        let most = (4.0 * (1.0 - share * share)).clamp(0.0, FIRM) * late * late;
         let found = self.of_tools + self.of_surfaces;
         // what is no number is not within
         if found <= most {

@@ -308,3 +308,30 @@ fn last_states_before_a_breakdown_are_written_and_can_be_gone_on_from() {
         assert_eq!((&broken_again.what, broken_again.step), (&broken.what, broken.step), "{}", run.name);
     }
 }
+
+/// Who begins inside is thrown out by springs, with energy that nobody had: told, once. Who comes to them from outside
+/// gets back what it had, and a kinematic law has no springs.
+#[test]
+fn energy_that_springs_of_contact_make_is_told_of() {
+    for run in configurations() {
+        let warned = |law: &str, begins: f64, velocity: f64| {
+            let text = format!(
+                "(duration: 1, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2), elements: Hex8),
+                    translate: (0, 0, {begins}), velocity: (0, 0, {velocity}), material: \"m\")}},
+                materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e4, poisson: 0.3))}},
+                tools: {{\"table\": (shape: Plane())}}, contacts: [Tool(tool: \"table\", law: {law})],
+                guards: (every: 50), integration: (safety: 0.5))"
+            );
+            let mut simulation = run.start(&text);
+            simulation.advance(400).unwrap();
+            let warnings = simulation.guards().warnings;
+            let told: Vec<_> = warnings.into_iter().filter(|warning| warning.criterion == "contact").collect();
+            assert!(told.len() <= 1 && told.iter().all(|warning| warning.value > 0.01), "{}: {told:?}", run.name);
+            !told.is_empty()
+        };
+        let springs = "Penalty(share: 0.1)";
+        assert!(warned(springs, -2e-4, 0.0), "{}: pushed out", run.name);
+        assert!(!warned(springs, 1e-4, -0.1), "{}: bounces", run.name);
+        assert!(!warned("Kinematic", 1e-4, -0.1), "{}: stops", run.name);
+    }
+}

@@ -66,6 +66,12 @@ fn springs_are_as_stiff_as_the_step_allows() {
     // damping that follows a step late leaves (√1.25 − .5)² of it
     let found = told(&law("Penalty(share: 0.5, damping: 0.5)"), apart);
     assert!(found.contains("0.2903 are stable"), "{found}");
+    // in small steps, too, springs do not throw out at once what comes in
+    let small =
+        |share: f64| format!("{}], integration: (safety: 0.1), loads: [", law(&format!("Penalty(share: {share})")));
+    assert_eq!(told(&small(0.99), apart), "");
+    let found = told(&small(1.01), apart);
+    assert!(found.contains("at 0.100 of the stable step 1.0000 are stable"), "{found}");
     for (text, wanted) in [
         ("Penalty(share: 0)", "5: error: `share` must be above 0, found 0"),
         ("Penalty(share: 0.1, damping: -1)", "5: error: `damping` must be 0 or above, found -1"),
