@@ -42,16 +42,14 @@ fn is_even(run: &Configuration, elements: &str, cells: (u32, u32)) {
     let (faces, nodes) = (off_by("Faces", 1), off_by("Nodes", 1));
     assert!(faces < of_one, "{}, {elements}: {faces}", run.name);
     assert!(elements == "Tet10" || faces < 0.2 * nodes, "{}, {elements}: {faces}, {nodes} with nodes", run.name);
-    // on a GPU the columns come and go in every step
-    if !run.name.starts_with("GPU") {
-        let faces = off_by("Faces", 8);
-        assert!(faces < of_eight, "{}, {elements}: {faces} after eight sweeps", run.name);
-    }
+    let faces = off_by("Faces", 8);
+    assert!(faces < of_eight, "{}, {elements}: {faces} after eight sweeps", run.name);
 }
 
 /// The contact patch test on meshes that do not match (C12), 1.5 % after eight sweeps.
 #[test]
 fn points_of_faces_pass_the_patch_test() {
+    // in software a GPU takes its time
     for run in configurations().iter().filter(|run| !run.name.starts_with("GPU")) {
         for elements in ["Tet4", "Hex8"] {
             is_even(run, elements, (4, 6));
@@ -61,7 +59,7 @@ fn points_of_faces_pass_the_patch_test() {
 
 #[test]
 #[ignore = "long"]
-fn points_of_faces_pass_the_patch_test_on_other_meshes_and_beside_a_gpu() {
+fn points_of_faces_pass_the_patch_test_on_other_meshes_and_on_a_gpu() {
     for run in configurations() {
         let elements = if run.name.starts_with("GPU") { &ELEMENTS[..1] } else { &ELEMENTS[..] };
         for elements in elements {

@@ -89,7 +89,7 @@ fn agree(what: &str, make: impl Fn() -> Simulation, (of_faces, roundings, least)
     }
     assert!(touched >= least, "{what}: only {touched} nodes are touched");
     assert!(50 * different.len() <= touched, "{what}: {} of {touched} nodes: {different:#?}", different.len());
-    eprintln!("{what}: {} of {touched} nodes beyond rounding", different.len());
+    eprintln!("{what}: {} of {touched} nodes beyond rounding: {different:?}", different.len());
 }
 
 const LAWS: [(f64, &str); 4] =
