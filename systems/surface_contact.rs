@@ -195,6 +195,7 @@ struct MeetingColumns {
     force: &'static mut ContactForce,
     touch: &'static mut SurfaceTouch,
     face_touch: Option<&'static mut FaceTouch>,
+    face_places: Option<&'static FacePlaces>,
 }
 
 impl SurfaceContacts {

@@ -5,10 +5,10 @@
 //! to nodes (`surface_contact_apply`), and the same with `surface_contact_friction` where there is any. At last, for
 //! each body: its loads (`surface_contact_push`), and what is kept of contacts (`surface_contact_touch`).
 
-use super::{Meeting, SurfaceContacts};
 use super::device::{MOTION_WORDS, SurfaceContact, find, is_on_device, note};
 use super::gather::OUT;
 use super::meet::{FACES, FREE, SLIDES, STICKS};
+use super::{Meeting, SurfaceContacts};
 use crate::backend::Buffers;
 use crate::backend::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
 use crate::backend::step::with_step;
@@ -92,10 +92,9 @@ impl Shared {
         let states = states.map(|(name, number)| format!("const {name}: f32 = {number:?};\n")).concat();
         let (rows, place) = match points.of_faces {
             true => ("", "point - surface.first"),
-            false => (
-                "@group(0) @binding(0) var<storage, read> surface_rows: array<u32>;\n",
-                "surface_rows[4u * point]",
-            ),
+            false => {
+                ("@group(0) @binding(0) var<storage, read> surface_rows: array<u32>;\n", "surface_rows[4u * point]")
+            }
         };
         let text = format!(
             "const TOUCH_NUMBERS: u32 = {MEETING_NUMBERS}u;\n{states}{rows}fn touch_of(point: u32) -> u32 {{\n    \
@@ -120,9 +119,7 @@ impl Shared {
         let text = shader!("surface_contact_touch");
         let kernel = self.relative(self.kernel("surface_contact_touch", text, points.surface, world));
         let kernel = match self.edges && !points.of_faces {
-            true => {
-                self.with_lists(kernel).fragment(shader!("surface_touch_edges")).bind("surface_faces", self.faces)
-            }
+            true => self.with_lists(kernel).fragment(shader!("surface_touch_edges")).bind("surface_faces", self.faces),
             false => kernel.fragment(Fragment::new(
                 "generated: no edges begin at a point",
                 "fn note_edges(point: u32, at: u32) {}\n",
@@ -223,9 +220,8 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
     let share = shared.kernel("surface_contact_share", shader!("surface_contact_share"), surface, world);
     let share = shared.of_nodes(share).fragment(shader!("surface_motion_turns"));
     all.push(share.bind("surface_shares", shared.shares).threads(nodes as u32));
-    let of_contacts = |entry, text| {
-        shared.relative(shared.kernel(entry, text, surface, world)).threads(whole.contacts).repeated()
-    };
+    let of_contacts =
+        |entry, text| shared.relative(shared.kernel(entry, text, surface, world)).threads(whole.contacts).repeated();
     let apply = || {
         let kernel = shared.kernel("surface_contact_apply", shader!("surface_contact_apply"), surface, world);
         let kernel = shared.of_nodes(kernel).fragment(shader!("surface_motion"));
@@ -250,13 +246,7 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
 }
 
 /// Where a body's surface is, and where it would go.
-fn before(
-    shared: &Shared,
-    body: Entity,
-    of: SurfaceContact,
-    world: &World,
-    buffers: &mut dyn Buffers,
-) -> [Kernel; 2] {
+fn before(shared: &Shared, body: Entity, of: SurfaceContact, world: &World, buffers: &mut dyn Buffers) -> [Kernel; 2] {
     let of_body = SurfaceBody { first: of.first, count: of.count, displacements: of.displacements };
     let of_body = buffers.uniform("surface of a body".into(), &of_body.bytes());
     let place = Kernel::new("surface_contact_place", "surface_contact_place")

@@ -143,9 +143,8 @@ pub const SURFACES: [&str; 20] = [
 
 /// Bodies that meet with nodes, with points of faces, and with edges.
 pub fn meeting() -> Simulation {
-    let block = |at: f64| {
-        format!("(mesh: Box(size: (1, 1, 1), cells: (2, 2, 2)), material: \"m\", translate: (0, 0, {at}))")
-    };
+    let block =
+        |at: f64| format!("(mesh: Box(size: (1, 1, 1), cells: (2, 2, 2)), material: \"m\", translate: (0, 0, {at}))");
     let text = format!(
         "(duration: 1, bodies: {{\"a\": {}, \"b\": {}, \"c\": {}}},
         materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},

@@ -67,9 +67,8 @@ fn agree(what: &str, make: impl Fn() -> Simulation, (of_faces, roundings, least)
     let Some(mut pair) = run_in("surface_contact", make) else { return };
     let (mut touched, mut different) = (0, Vec::new());
     for body in entities::<ContactForce>(pair.host.world_mut()) {
-        let force = |simulation: &Simulation, row: usize| {
-            simulation.world().get::<ContactForce>(body).unwrap().vector(row)
-        };
+        let force =
+            |simulation: &Simulation, row: usize| simulation.world().get::<ContactForce>(body).unwrap().vector(row);
         let clock = *pair.before().resource::<Clock>();
         let masses = pair.before().get::<Mass>(body).unwrap();
         for row in 0..masses.len() {
