@@ -85,8 +85,9 @@ const TURNED: &str = "(duration: 0.04, bodies: {
     materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))},
     contacts: [Between(bodies: (\"a\", \"b\"), friction: 0.3, points: Faces, edges: true)])";
 
-/// Whenever lists are made, as by how many steps are submitted at once. Against the CPU a point that rounding lets touch
-/// a step earlier or later changes what its body gets by one part in some hundred steps, of a dozen points and more.
+/// Whenever lists are made, as by how many steps are submitted at once. Against the CPU a point that rounding lets
+/// touch a step earlier or later changes what its body gets by one part in some hundred steps, of a dozen points and
+/// more.
 #[test]
 fn edges_and_faces_on_a_gpu_do_as_on_the_cpu_and_the_same_every_time() {
     let scene = TURNED.replace("CELLS", "4");
