@@ -130,7 +130,10 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
         allowed = max(min(before + min(outside_by - expected, 0.0) + settling, 0.0), min(outside_by, 0.0));
         let gap = max(outside_by - allowed, -OUT * surface.edge);
         let friction = meeting_number(meets, friction_word);
-        begin(2u * point, meets, parts, Begun(both.first.normal, gap, outside_by, allowed, within, friction, slip));
+        let begun = Begun(both.first.normal, gap, outside_by, allowed, within, friction, slip);
+        if meets_it(meets, parts, begun) {
+            begin(2u * point, meets, parts, begun);
+        }
     }
     if both.second.there {
         // of another face nothing is known of how the point got there
@@ -139,7 +142,9 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
         let second = gap_of(both.second, parts, place) - meeting_number(meets, 3u);
         let friction = meeting_number(meets, friction_word);
         let begun = Begun(both.second.normal, max(second, -settling), second, 0.0, within, friction, vec3<f32>(0.0));
-        begin(2u * point + 1u, meets, parts, begun);
+        if meets_it(meets, parts, begun) {
+            begin(2u * point + 1u, meets, parts, begun);
+        }
     }
     for (var k = 0u; k < 3u; k++) {
         surface_touch[at + k] = 0.0;

@@ -51,21 +51,23 @@ fn begin_none(contact: u32) {
     surface_contacts[CONTACT_WORDS * contact + ACTIVE] = 0u;
 }
 
-// Notes a contact where the point would end inside; where a spring keeps it out, where it is. Whether there is one.
-fn begin(contact: u32, meets: u32, parts: Parts, begun: Begun) -> bool {
-    begin_none(contact);
+// Whether the point would end inside; where a spring keeps it out, whether it is.
+fn meets_it(meets: u32, parts: Parts, begun: Begun) -> bool {
+    if meeting_number(meets, 4u) > 0.0 {
+        return begun.outside - begun.allowed < begun.within;
+    }
+    return begun.gap + dot(begun.normal, goes(parts, NEXT)) < begun.within;
+}
+
+// Notes the contact of a point that meets something.
+fn begin(contact: u32, meets: u32, parts: Parts, begun: Begun) {
     let share = meeting_number(meets, 4u);
     var gap = begun.gap;
     var acts = BY_STEP;
     if share > 0.0 {
         let outside = begun.outside - begun.allowed;
-        if !(outside < begun.within) {
-            return false;
-        }
         gap = spring_gap(share, meeting_number(meets, 5u), outside, dot(begun.normal, goes(parts, LAST)));
         acts = BY_SPRING;
-    } else if !(gap + dot(begun.normal, goes(parts, NEXT)) < begun.within) {
-        return false;
     }
     set_vector(contact, NORMAL, begun.normal);
     set_number(contact, GAP, gap);
@@ -81,5 +83,4 @@ fn begin(contact: u32, meets: u32, parts: Parts, begun: Begun) -> bool {
         surface_contacts[at + PART + PARTS + part] = bitcast<u32>(parts.weights[part]);
     }
     surface_contacts[at + ACTIVE] = acts;
-    return true;
 }

@@ -151,11 +151,6 @@ fn surface_contact_edges(@builtin(global_invocation_id) id: vec3<u32>, @builtin(
         if !found.there {
             continue;
         }
-        if contact == own.y {
-            // the host tells of it
-            atomicAdd(&surface_motion[5], 1u);
-            return;
-        }
         var parts: Parts;
         for (var which = 0u; which < 2u; which++) {
             parts.nodes[which] = edge_word(one, which);
@@ -172,8 +167,15 @@ fn surface_contact_edges(@builtin(global_invocation_id) id: vec3<u32>, @builtin(
         let outside = found.gap - thickness;
         let friction = meeting_number(meets, 2u);
         let begun = Begun(found.normal, max(outside, -settling), outside, 0.0, 0.0, friction, vec3<f32>(0.0));
-        if begin(contact, meets, parts, begun) {
-            contact++;
+        if !meets_it(meets, parts, begun) {
+            continue;
         }
+        if contact == own.y {
+            // the host tells of it
+            atomicAdd(&surface_motion[5], 1u);
+            return;
+        }
+        begin(contact, meets, parts, begun);
+        contact++;
     }
 }

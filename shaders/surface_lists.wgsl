@@ -31,7 +31,8 @@ struct SurfaceContact {
 }
 @group(0) @binding(0) var<uniform> surface: SurfaceContact;
 @group(0) @binding(0) var<storage, read> surface_faces: array<u32>; // eight a triangle: corners, who is beside, body, depth; more behind
-@group(0) @binding(0) var<storage, read> surface_lists: array<u32>; // the radius (m), and what is said above
+// the radius (m), whether contacts of edges lie as what is near them, and what is said above
+@group(0) @binding(0) var<storage, read> surface_lists: array<u32>;
 
 // of two bodies: what meets, friction that sticks and slides, thickness, share and damping of a spring
 const MEETING_WORDS: u32 = 6u;
@@ -40,7 +41,7 @@ const FACES_MEET: u32 = 2u;
 const EDGES_MEET: u32 = 4u;
 const FACE_POINT_WORDS: u32 = 9u; // corners of its facet, what each has of it, the triangle that it is on
 const EDGE_WORDS: u32 = 7u; // ends, the triangles beside it, their corners across from it, body
-const EDGE_CONTACTS: u32 = 4u; // that each edge has room for where lists do not hold
+const EDGE_CONTACTS: u32 = 4u; // that each edge has room for where they do not lie so
 const NONE: u32 = 0xffffffffu;
 
 fn largest_step() -> f32 {
@@ -58,13 +59,14 @@ fn lists_hold() -> bool {
     return 1.0001 * (farthest + nearer) <= bitcast<f32>(surface_lists[0]);
 }
 
-// The first contact of an item and the end of them: two of a point; of an edge as many as there are edges in its list.
+// The first contact of an item and the end of them: two of a point; of an edge as many as there are others near it, as
+// long as there is room for that.
 fn contacts_of(item: u32, hold: bool) -> vec2<u32> {
     if item < surface.points {
         return vec2<u32>(2u * item, 2u * item + 2u);
     }
     let of_edges = 2u * surface.points;
-    if hold {
+    if hold && surface_lists[1] != 0u {
         let before = surface_lists[surface.list + surface.points];
         let of_item = vec2<u32>(surface_lists[surface.list + item], surface_lists[surface.list + item + 1u]);
         return of_edges + of_item - before;

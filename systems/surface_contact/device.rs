@@ -205,7 +205,7 @@ pub(super) fn before_steps(world: &mut World) -> Result<u64, Error> {
     let mut contacts = world.resource_mut::<SurfaceContacts>();
     contacts.surface.figures.unlisted = u64::from(words[4]);
     if words[5] > 0 {
-        let why = "more edges cross one at once than a GPU has room for where its lists are too old; the CPU has";
+        let why = "more than four edges cross one at once, of so many that a GPU has no room for all; the CPU has";
         return Err(Error::Options(why.into()));
     }
     let [left, fresh] = [nearer, 0.0].map(|nearer| contacts.steps_ahead(nearer, largest));

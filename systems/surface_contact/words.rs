@@ -16,9 +16,10 @@ const EDGES_MEET: u32 = 4;
 /// Of what is near a node, a point of a face or an edge there is room for so much, on average, and besides.
 const ROOM_OF_NODES: usize = 16;
 const ROOM_OF_FACE_POINTS: usize = 10;
+const ROOM_OF_EDGES: usize = 16;
 const ROOM_BESIDES: usize = 4096;
 
-/// Contacts that an edge has room for where lists do not hold; as many on average where they do, and besides.
+/// Contacts that an edge has room for where there is none for all in its list; on average, and besides.
 const EDGE_CONTACTS: usize = 4;
 
 /// Words of `surface_faces`, and where its parts begin.
@@ -40,9 +41,10 @@ pub(super) struct Layout {
     pub displacements: usize,
     /// Contacts of points and edges.
     pub contacts: usize,
-    /// Pairs in lists, and those of edges.
+    /// Those of edges.
+    edge_contacts: usize,
+    /// Pairs in lists.
     pairs: usize,
-    edge_pairs: usize,
 }
 
 /// Words of `surface_lists`: pieces that hold something, each with its place, of so many in all.
@@ -68,14 +70,14 @@ impl Layout {
         let [nodes, points, edges] = [surface.nodes.len(), surface.points.len(), surface.crossings.edges.len()];
         let (face_points, besides) = (points - nodes, |count: usize| if count > 0 { ROOM_BESIDES } else { 0 });
         let of_nodes = if contacts.meetings.iter().flatten().any(|of| !of.faces) { nodes } else { 0 };
-        let edge_pairs = EDGE_CONTACTS * edges + besides(edges);
-        let of_points = ROOM_OF_NODES * of_nodes + ROOM_OF_FACE_POINTS * face_points;
-        let pairs = of_points + besides(of_nodes + face_points) + edge_pairs;
-        let inverse = 1 + points + edges + 1 + pairs;
+        let edge_contacts = EDGE_CONTACTS * edges + besides(edges);
+        let room = ROOM_OF_NODES * of_nodes + ROOM_OF_FACE_POINTS * face_points + ROOM_OF_EDGES * edges;
+        let pairs = room + besides(room);
+        let inverse = 2 + points + edges + 1 + pairs;
         // an item's own nodes, and those of each thing that is near it
         let (own, of_near) = (of_nodes + 4 * face_points + 2 * edges, if face_points > 0 { 4 } else { 3 });
         let displacements = inverse + nodes + 1 + own + of_near * pairs;
-        Self { list: 1, inverse, displacements, contacts: 2 * points + edge_pairs, pairs, edge_pairs }
+        Self { list: 2, inverse, displacements, contacts: 2 * points + edge_contacts, edge_contacts, pairs }
     }
 }
 
@@ -187,10 +189,10 @@ impl SurfaceContacts {
     pub(super) fn list_words(&self, world: &World) -> ListWords {
         let (surface, layout) = (&self.surface, Layout::of(self));
         let of_edges = surface.crossings.near.len();
-        let fits = surface.lists.triangles.len() + of_edges <= layout.pairs && of_edges <= layout.edge_pairs;
+        let fits = surface.lists.triangles.len() + of_edges <= layout.pairs;
         let radius = if fits { surface.lists.radius.min(f64::from(f32::MAX)) as f32 } else { -1.0 };
         let mut pieces = Vec::new();
-        let mut first = vec![radius.to_bits()];
+        let mut first = vec![radius.to_bits(), u32::from(of_edges <= layout.edge_contacts)];
         if fits {
             let others: Vec<u32> = surface.crossings.near.iter().map(|pair| pair[1]).collect();
             let near = surface.near_items(&others);
