@@ -136,6 +136,7 @@ fn old_lists_lose_no_contact_on_a_gpu() {
         ((FACES, TWO), ", points: Faces", 41),
         ((RIDGES, TWO), ", edges: true", 4),
         ((RIDGES, TWO), ", edges: true, points: Faces", 4),
+        ((RING, ITSELF), "", 4),
         ((RING, ITSELF), ", edges: true", 4),
         ((RING, ITSELF), ", edges: true, points: Faces", 4),
     ] {
