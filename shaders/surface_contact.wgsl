@@ -1,34 +1,30 @@
 // What points of a body's surface face, and with what they would meet in this step; twin of systems/surface_contact.
-// First of a step are surface_contact_place.wgsl and surface_contact_foresee.wgsl, after it
-// surface_contact_impulse.wgsl.
-@group(0) @binding(0) var<storage, read> surface_nodes: array<f32>;
-@group(0) @binding(0) var<storage, read> surface_rows: array<u32>;
-@group(0) @binding(0) var<storage, read_write> surface_contacts: array<u32>;
+// What a point is stands in surface_point_node.wgsl or surface_point_face.wgsl, touch_of is generated. First of a step
+// are surface_contact_place.wgsl and surface_contact_foresee.wgsl, after it surface_contact_edges.wgsl and
+// surface_contact_share.wgsl.
 @group(0) @binding(0) var<storage, read_write> surface_touch: array<f32>;
 
-fn meeting(point: u32, triangle: u32) -> u32 {
-    return surface.meetings + MEETING_WORDS * (point * surface.bodies + surface_faces[8u * triangle + 6u]);
+fn meeting_with(triangle: u32) -> u32 {
+    return meeting(surface.body, surface_faces[8u * triangle + 6u]);
 }
 
-fn thickness_of(point: u32, triangle: u32) -> f32 {
-    return bitcast<f32>(surface_faces[meeting(point, triangle) + 3u]);
+fn thickness_of(triangle: u32) -> f32 {
+    return meeting_number(meeting_with(triangle), 3u);
 }
 
 // Whether a triangle may be in a point's way at all: where lists do not hold, that is not known from them.
-fn may_meet(node: u32, of_body: u32, triangle: u32) -> bool {
-    if surface_faces[meeting(of_body, triangle)] == 0u {
+fn may_meet(point: u32, triangle: u32) -> bool {
+    if (surface_faces[meeting_with(triangle)] & MEETS) == 0u {
         return false;
     }
-    if surface_faces[8u * triangle + 6u] != of_body {
+    if surface_faces[8u * triangle + 6u] != surface.body {
         return true;
     }
-    for (var corner = 0u; corner < 3u; corner++) {
-        if surface_faces[8u * triangle + corner] == node {
-            return false;
-        }
+    if is_of_point(point, triangle) {
+        return false;
     }
-    let starts = surface.apart + node;
-    let all = surface.apart + surface.nodes + 1u;
+    let starts = surface.apart + point;
+    let all = surface.apart + surface.points + 1u;
     for (var place = surface_faces[starts]; place < surface_faces[starts + 1u]; place++) {
         if surface_faces[all + place] == triangle {
             return false;
@@ -37,18 +33,22 @@ fn may_meet(node: u32, of_body: u32, triangle: u32) -> bool {
     return true;
 }
 
+// Whether two faces are walls of a corner that the point is in.
+fn is_corner(first: Facing, second: Facing, point: vec3<f32>) -> bool {
+    return dot(first.normal, second.normal) < CORNER && rises(first, second, point);
+}
+
 struct Faced {
     first: Facing,
     second: Facing,
 }
 
-fn faced(node: u32, of_body: u32) -> Faced {
+fn faced(number: u32, point: vec3<f32>) -> Faced {
     let hold = lists_hold();
-    let starts = surface.list + node;
-    let all = surface.list + surface.nodes + 1u;
+    let starts = surface.list + number;
+    let all = surface.list + surface.items + 1u;
     let begin = select(0u, surface_lists[starts], hold);
     let end = select(surface.triangles, surface_lists[starts + 1u], hold);
-    let point = place_of(node);
     let reach_without = reach_of_step();
     var both: Faced;
     both.first.there = false;
@@ -59,12 +59,12 @@ fn faced(node: u32, of_body: u32) -> Faced {
         var triangle = place;
         if hold {
             triangle = surface_lists[all + place];
-        } else if !may_meet(node, of_body, triangle) {
+        } else if !may_meet(number, triangle) {
             continue;
         }
         let corners = corners_of(triangle, point);
         let found = nearest(corners);
-        let reach = reach_without + thickness_of(of_body, triangle);
+        let reach = reach_without + thickness_of(triangle);
         let depth = bitcast<f32>(surface_faces[8u * triangle + 7u]);
         // no number is near nothing
         if !(length(found.at) <= max(reach, depth)) {
@@ -75,7 +75,7 @@ fn faced(node: u32, of_body: u32) -> Faced {
             continue;
         }
         if !own_known {
-            own = normal_of_node(node);
+            own = normal_of_point(number);
             own_known = true;
         }
         let turned = dot(facing.normal, own);
@@ -84,75 +84,16 @@ fn faced(node: u32, of_body: u32) -> Faced {
         }
         facing.way = (abs(facing.gap) + ALIKE * surface.edge) * (1.0 + TURNED_AWAY + turned);
         if !both.first.there || facing.way < both.first.way {
-            if both.first.there && is_corner(facing, both.first) {
+            if both.first.there && is_corner(facing, both.first, point) {
                 both.second = both.first;
             }
             both.first = facing;
         } else if !both.second.there || facing.way < both.second.way {
             both.second = facing;
         }
-        both.second.there = both.second.there && is_corner(both.first, both.second);
+        both.second.there = both.second.there && is_corner(both.first, both.second, point);
     }
     return both;
-}
-
-fn step_of(node: u32) -> vec3<f32> {
-    let at = NODE_NUMBERS * node + 3u;
-    return vec3<f32>(surface_nodes[at], surface_nodes[at + 1u], surface_nodes[at + 2u]);
-}
-
-fn write_numbers(at: u32, v: vec3<f32>) {
-    let bits = bitcast<vec3<u32>>(v);
-    surface_contacts[at] = bits.x;
-    surface_contacts[at + 1u] = bits.y;
-    surface_contacts[at + 2u] = bits.z;
-}
-
-fn last_step_of(node: u32) -> vec3<f32> {
-    let at = NODE_NUMBERS * node + 6u;
-    return vec3<f32>(surface_nodes[at], surface_nodes[at + 1u], surface_nodes[at + 2u]);
-}
-
-// Notes a contact where the point would end inside; where a spring keeps it out, where it is.
-fn note(contact: u32, node: u32, of_body: u32, facing: Facing, kinematic_gap: f32, outside_by: f32, allowed: f32,
-    friction: f32, slip: vec3<f32>) {
-    let at = CONTACT_WORDS * contact;
-    surface_contacts[at + ACTIVE] = 0u;
-    if !facing.there {
-        return;
-    }
-    let corners = 8u * facing.triangle;
-    let relative = step_of(node) - facing.weights.x * step_of(surface_faces[corners])
-        - facing.weights.y * step_of(surface_faces[corners + 1u]) - facing.weights.z * step_of(surface_faces[corners + 2u]);
-    let meets = meeting(of_body, facing.triangle);
-    let share = bitcast<f32>(surface_faces[meets + 4u]);
-    var gap = kinematic_gap;
-    var acts = BY_STEP;
-    if share > 0.0 {
-        let came = last_step_of(node) - facing.weights.x * last_step_of(surface_faces[corners])
-            - facing.weights.y * last_step_of(surface_faces[corners + 1u])
-            - facing.weights.z * last_step_of(surface_faces[corners + 2u]);
-        let damping = bitcast<f32>(surface_faces[meets + 5u]);
-        let inside = outside_by - allowed;
-        if !(inside < 0.0) {
-            return;
-        }
-        gap = spring_gap(share, damping, inside, dot(facing.normal, came));
-        acts = BY_SPRING;
-    } else if !(gap + dot(facing.normal, relative) < 0.0) {
-        return;
-    }
-    surface_contacts[at + TRIANGLE] = facing.triangle;
-    write_numbers(at + WEIGHTS, facing.weights);
-    write_numbers(at + NORMAL, facing.normal);
-    surface_contacts[at + GAP] = bitcast<u32>(gap);
-    surface_contacts[at + FRICTION] = bitcast<u32>(friction);
-    write_numbers(at + SLIP, slip);
-    surface_contacts[at + PRESSING] = 0u;
-    write_numbers(at + RUBBING, vec3<f32>(0.0));
-    surface_contacts[at + SLIDING] = 0u;
-    surface_contacts[at + OUTSIDE] = bitcast<u32>(outside_by);
-    surface_contacts[at + ACTIVE] = acts;
 }
 
 @compute @workgroup_size(64)
@@ -161,34 +102,25 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     if i >= surface.count {
         return;
     }
-    if i == 0u {
-        // nobody asks for these in this step any more
-        let turn = 1u - (step.number & 1u);
-        atomicStore(&surface_motion[turn], 0u);
-        atomicStore(&surface_motion[2u + turn], 0u);
-        if surface.first == 0u && !lists_hold() {
-            atomicAdd(&surface_motion[4], 1u);
-        }
-    }
-    let node = surface.first + i;
-    let of_body = surface.body;
-    let both = faced(node, of_body);
-    let at = TOUCH_NUMBERS * surface_rows[4u * node];
+    let point = surface.first + i;
+    let place = place_of_point(point);
+    let both = faced(point, place);
+    let at = touch_of(point);
     let slip = vec3<f32>(surface_touch[at], surface_touch[at + 1u], surface_touch[at + 2u]);
     let before = surface_touch[at + 3u];
     let state = surface_touch[at + 4u];
     let gap_before = surface_touch[at + 5u];
-    var settling = surface.settling * step.time_step;
-    if step.time * surface.settling >= 0.5 * surface.edge {
-        settling *= 0.01;
-    }
-    if surface.relaxed != 0u {
-        settling = FAR;
-    }
+    let friction_word = select(2u, 1u, state == STICKS);
+    let settling = settling_of_step();
+    let within = SHARES * surface.edge;
+    begin_none(2u * point);
+    begin_none(2u * point + 1u);
     var allowed = 0.0;
     var outside_by = 0.0;
     if both.first.there {
-        outside_by = both.first.gap - thickness_of(of_body, both.first.triangle);
+        let meets = meeting_with(both.first.triangle);
+        let parts = parts_of(point, both.first, place);
+        outside_by = gap_of(both.first, parts, place) - meeting_number(meets, 3u);
         var expected = 0.0;
         if state == FACES {
             expected = gap_before - 2.0 * largest_step();
@@ -196,27 +128,28 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
             expected = gap_before;
         }
         allowed = max(min(before + min(outside_by - expected, 0.0) + settling, 0.0), min(outside_by, 0.0));
+        let gap = max(outside_by - allowed, -OUT * surface.edge);
+        let friction = meeting_number(meets, friction_word);
+        let begun = Begun(both.first.normal, gap, outside_by, allowed, within, friction, slip);
+        if meets_it(meets, parts, begun) {
+            begin(2u * point, meets, parts, begun);
+        }
     }
-    surface_touch[at + 3u] = allowed;
-    let stuck = state == STICKS;
-    var friction = vec2<f32>(0.0);
-    if both.first.there {
-        let meets = meeting(of_body, both.first.triangle);
-        friction.x = bitcast<f32>(surface_faces[meets + select(2u, 1u, stuck)]);
-    }
-    var second_gap = 0.0;
     if both.second.there {
-        let meets = meeting(of_body, both.second.triangle);
-        friction.y = bitcast<f32>(surface_faces[meets + select(2u, 1u, stuck)]);
-        second_gap = both.second.gap - thickness_of(of_body, both.second.triangle);
+        // of another face nothing is known of how the point got there
+        let meets = meeting_with(both.second.triangle);
+        let parts = parts_of(point, both.second, place);
+        let second = gap_of(both.second, parts, place) - meeting_number(meets, 3u);
+        let friction = meeting_number(meets, friction_word);
+        let begun = Begun(both.second.normal, max(second, -settling), second, 0.0, within, friction, vec3<f32>(0.0));
+        if meets_it(meets, parts, begun) {
+            begin(2u * point + 1u, meets, parts, begun);
+        }
     }
-    let gap = max(outside_by - allowed, -OUT * surface.edge);
-    note(2u * node, node, of_body, both.first, gap, outside_by, allowed, friction.x, slip);
-    note(2u * node + 1u, node, of_body, both.second, max(second_gap, -settling), second_gap, 0.0, friction.y,
-        vec3<f32>(0.0));
     for (var k = 0u; k < 3u; k++) {
         surface_touch[at + k] = 0.0;
     }
+    surface_touch[at + 3u] = allowed;
     surface_touch[at + 4u] = select(FREE, FACES, both.first.there);
     surface_touch[at + 5u] = select(0.0, outside_by, both.first.there);
 }

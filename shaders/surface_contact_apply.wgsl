@@ -14,7 +14,7 @@ fn surface_contact_apply(@builtin(global_invocation_id) id: vec3<u32>, @builtin(
     }
     let force = collect_all(node);
     let at = NODE_NUMBERS * node;
-    surface_nodes[at + 3u] += surface_nodes[at + 9u] * force.x;
-    surface_nodes[at + 4u] += surface_nodes[at + 10u] * force.y;
-    surface_nodes[at + 5u] += surface_nodes[at + 11u] * force.z;
+    surface_nodes[at + NEXT] += surface_nodes[at + RESPONSE] * force.x;
+    surface_nodes[at + NEXT + 1u] += surface_nodes[at + RESPONSE + 1u] * force.y;
+    surface_nodes[at + NEXT + 2u] += surface_nodes[at + RESPONSE + 2u] * force.z;
 }

@@ -33,6 +33,11 @@ fn corners_of(triangle: u32, point: vec3<f32>) -> array<vec3<f32>, 3> {
         place_of(surface_faces[at + 2u]) - point);
 }
 
+fn has_corner(triangle: u32, node: u32) -> bool {
+    let at = 8u * triangle;
+    return surface_faces[at] == node || surface_faces[at + 1u] == node || surface_faces[at + 2u] == node;
+}
+
 fn normal_of(corners: array<vec3<f32>, 3>) -> vec3<f32> {
     let across = cross(corners[1] - corners[0], corners[2] - corners[0]);
     let size = length(across);
@@ -157,9 +162,4 @@ fn outside(triangle: u32, point: vec3<f32>, corners: array<vec3<f32>, 3>, found:
     facing.normal = select(found.at, -found.at, outwards) / distance;
     facing.gap = select(-distance, distance, outwards);
     return facing;
-}
-
-// Whether two faces are walls of a corner that the point is in: the second rises before the first.
-fn is_corner(one: Facing, other: Facing) -> bool {
-    return dot(one.normal, other.normal) < CORNER && dot(one.normal, other.at - one.at) > 0.0;
 }

@@ -1,18 +1,25 @@
-// What kernels of contact between surfaces share: the surfaces, what may be near what, and how contacts lie. Twin of
-// systems/surface_contact/device.rs. All numbers stand as words, floats as their bits. motion is in
+// What kernels of contact between surfaces share: the surfaces, and what may be near what. Twin of
+// systems/surface_contact/words.rs. All numbers stand as words, floats as their bits. motion is in
 // surface_motion.wgsl, or in surface_motion_turns.wgsl.
 struct SurfaceContact {
-    nodes: u32, // of all surfaces; each is a point that may meet others
+    nodes: u32, // of all surfaces
+    points: u32, // that may meet others: the nodes, then points of faces
+    items: u32, // that have contacts: the points, then edges
+    contacts: u32, // that there is room for
     triangles: u32,
     bodies: u32,
-    first: u32, // first node of the body whose columns are bound
-    count: u32, // how many it has
-    body: u32, // its number
+    first: u32, // first node, point or edge that the kernel is for
+    count: u32, // how many
+    body: u32, // the body whose columns are bound
     around: u32, // where in surface_faces are: starts of the triangles around each node, and these
-    meetings: u32, // four words for each pair of bodies: whether they meet, friction that sticks and slides, thickness
+    meetings: u32, // words for each pair of bodies
     apart: u32, // starts of the triangles that are never in a point's way, and these
-    list: u32, // where in surface_lists are: starts of the triangles near each point, and these
-    inverse: u32, // starts of the points that are near a triangle of a node, and these
+    face_points: u32, // words for each point of a face
+    facets: u32, // the corners of the facet that each triangle is of
+    edges: u32, // words for each edge
+    begins: u32, // starts of the edges that begin at each node, and these
+    list: u32, // where in surface_lists are: starts of what is near each item (triangles, of edges edges), and these
+    inverse: u32, // starts of the items that may have contacts at a node, and these
     displacements: u32, // when the lists were made (m)
     edge: f32, // (m)
     settling: f32, // how fast points come out that begin inside (m/s)
@@ -24,27 +31,17 @@ struct SurfaceContact {
 }
 @group(0) @binding(0) var<uniform> surface: SurfaceContact;
 @group(0) @binding(0) var<storage, read> surface_faces: array<u32>; // eight a triangle: corners, who is beside, body, depth; more behind
-@group(0) @binding(0) var<storage, read> surface_lists: array<u32>; // the radius (m), and what is said above
+// the radius (m), whether contacts of edges lie as what is near them, and what is said above
+@group(0) @binding(0) var<storage, read> surface_lists: array<u32>;
 
-const NODE_NUMBERS: u32 = 12u; // place, next step, last step, response
-const CONTACT_WORDS: u32 = 24u;
-const TRIANGLE: u32 = 0u; // places of words of a contact
-const WEIGHTS: u32 = 1u;
-const NORMAL: u32 = 4u;
-const GAP: u32 = 7u;
-const FRICTION: u32 = 8u;
-const SLIP: u32 = 9u;
-const PRESSING: u32 = 12u;
-const RUBBING: u32 = 13u;
-const SLIDING: u32 = 16u;
-const YIELDS: u32 = 17u;
-const YIELDS_ALONG: u32 = 18u;
-const CHANGE: u32 = 19u;
-const OUTSIDE: u32 = 22u;
-const ACTIVE: u32 = 23u;
-const BY_STEP: u32 = 1u; // what a contact acts by: the step that is predicted, or a spring
-const BY_SPRING: u32 = 2u;
-const MEETING_WORDS: u32 = 6u; // of two bodies: whether they meet, friction that sticks and slides, thickness, share and damping of a spring
+// of two bodies: what meets, friction that sticks and slides, thickness, share and damping of a spring
+const MEETING_WORDS: u32 = 6u;
+const NODES_MEET: u32 = 1u;
+const FACES_MEET: u32 = 2u;
+const EDGES_MEET: u32 = 4u;
+const FACE_POINT_WORDS: u32 = 9u; // corners of its facet, what each has of it, the triangle that it is on
+const EDGE_WORDS: u32 = 7u; // ends, the triangles beside it, their corners across from it, body
+const EDGE_CONTACTS: u32 = 4u; // that each edge has room for where they do not lie so
 const NONE: u32 = 0xffffffffu;
 
 fn largest_step() -> f32 {
@@ -55,9 +52,25 @@ fn reach_of_step() -> f32 {
     return 4.0 * largest_step() + surface.margin;
 }
 
-// Whether all that may be near is in the lists. If not, all triangles and points are gone through: slow, and right.
+// Whether all that may be near is in the lists. If not, everything is gone through: slow, and right.
 fn lists_hold() -> bool {
     let nearer = 2.0 * sqrt(bitcast<f32>(motion(2u + (step.number & 1u))));
     let farthest = max(surface.thickness + reach_of_step(), surface.depth);
     return 1.0001 * (farthest + nearer) <= bitcast<f32>(surface_lists[0]);
+}
+
+// The first contact of an item and the end of them: two of a point; of an edge as many as there are others near it, as
+// long as there is room for that.
+fn contacts_of(item: u32, hold: bool) -> vec2<u32> {
+    if item < surface.points {
+        return vec2<u32>(2u * item, 2u * item + 2u);
+    }
+    let of_edges = 2u * surface.points;
+    if hold && surface_lists[1] != 0u {
+        let before = surface_lists[surface.list + surface.points];
+        let of_item = vec2<u32>(surface_lists[surface.list + item], surface_lists[surface.list + item + 1u]);
+        return of_edges + of_item - before;
+    }
+    let first = of_edges + EDGE_CONTACTS * (item - surface.points);
+    return vec2<u32>(first, first + EDGE_CONTACTS);
 }

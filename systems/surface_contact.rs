@@ -12,6 +12,7 @@ mod memory;
 mod motion;
 mod solved;
 mod survey;
+mod words;
 
 use super::node_slices::BodyColumns;
 use super::repeat::Repeat;
@@ -52,8 +53,7 @@ pub fn system() -> System {
     System {
         shared_only: surfaces_stay,
         // where elements go, surfaces are found anew: on the host
-        // and points of faces and edges there, too
-        device_when: |world| surfaces_stay(world) && nodes_meet_alone(world),
+        device_when: surfaces_stay,
         before_steps: Some(device::before_steps),
         repeats: sweeps,
         ..system.on_device(kernels::kernels)
@@ -71,12 +71,6 @@ fn sweeps(world: &World) -> Option<Repeat> {
     let contacts = world.get_resource::<SurfaceContacts>()?;
     let what = ["normal forces", "what they do to nodes", "friction", "what it does to nodes"];
     Repeat::several(contacts.sweeps, if contacts.has_friction() { &what } else { &what[..2] })
-}
-
-/// Whether the points that meet others are all nodes.
-fn nodes_meet_alone(world: &World) -> bool {
-    let contacts = world.get_resource::<SurfaceContacts>();
-    contacts.is_some_and(|contacts| !contacts.meetings.iter().flatten().any(|meeting| meeting.faces || meeting.edges))
 }
 
 /// How far points may go before it is looked anew what is near what, in edges; four times that of fast ones.
@@ -201,6 +195,7 @@ struct MeetingColumns {
     force: &'static mut ContactForce,
     touch: &'static mut SurfaceTouch,
     face_touch: Option<&'static mut FaceTouch>,
+    face_places: Option<&'static FacePlaces>,
 }
 
 impl SurfaceContacts {

@@ -221,17 +221,19 @@ fn has_the_structs_of_rust(kernel: &Kernel, composer: &mut Composer) {
 }
 
 #[test]
-fn kernels_of_attachments_have_the_buffers_and_the_structs_that_they_name() {
+fn kernels_of_attachments_and_surfaces_have_the_buffers_and_the_structs_that_they_name() {
     let mut composer = Composer::default();
-    let (all, _) = all_kernels(kernel_units::attached("").world_mut());
-    let of_attachments = all.iter().filter(|(system, _)| ["glue", "suture_tension"].contains(&system.as_str()));
-    let mut found = BTreeSet::new();
-    for (_, kernel) in of_attachments {
-        uses_its_buffers(kernel, &mut composer);
-        has_the_structs_of_rust(kernel, &mut composer);
-        found.insert(kernel.entry);
+    let attached = (kernel_units::attached(""), ["glue", "suture_tension"], 11);
+    for (mut simulation, systems, entries) in [attached, (kernel_units::meeting(), ["surface_contact"; 2], 10)] {
+        let (all, _) = all_kernels(simulation.world_mut());
+        let mut found = BTreeSet::new();
+        for (_, kernel) in all.iter().filter(|(system, _)| systems.contains(&system.as_str())) {
+            uses_its_buffers(kernel, &mut composer);
+            has_the_structs_of_rust(kernel, &mut composer);
+            found.insert(kernel.entry);
+        }
+        assert_eq!(found.len(), entries, "{found:?}");
     }
-    assert_eq!(found.len(), 11, "{found:?}");
 }
 
 #[test]

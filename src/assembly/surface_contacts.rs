@@ -42,14 +42,23 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World) {
     contacts.edge = meeting.iter().map(|(_, body)| edge(body)).fold(f64::INFINITY, f64::min);
     let speeds = meeting.iter().map(|(_, body)| settling(body, contacts.edge, world));
     contacts.settling = speeds.fold(0.0, f64::max);
-    for (number, (_, body)) in meeting.iter().enumerate() {
+    for (number, (name, body)) in meeting.iter().enumerate() {
         let zeros = |rows: usize, numbers: usize| Reals::zeros(assembly.precision, numbers * rows);
         let nodes = body.node_rows.len();
         let columns = (ContactForce(zeros(nodes, 3)), SurfaceTouch(zeros(nodes, MEETING_NUMBERS)));
         world.entity_mut(body.entity).insert(columns);
         if contacts.has_face_points(number) {
-            let surface = body.placed.surface();
-            let points = surface.iter().flat_map(SurfaceFace::facets).map(|facet| face_points(facet).len()).sum();
+            let counted = |facet: [u32; 4]| (facet, face_points(facet).len());
+            let points = if scene.may_lose_elements(name) {
+                let faces = body.placed.mesh.faces_and_opposites(u32::MAX);
+                let places = FacePlaces::of(faces.iter().flat_map(|(face, _)| face.facets()).map(counted));
+                let points = places.points();
+                world.entity_mut(body.entity).insert(places);
+                points
+            } else {
+                let facets = body.placed.surface().iter().flat_map(SurfaceFace::facets);
+                facets.map(|facet| counted(facet).1).sum()
+            };
             world.entity_mut(body.entity).insert(FaceTouch(zeros(points, MEETING_NUMBERS)));
         }
     }

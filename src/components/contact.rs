@@ -3,6 +3,7 @@
 use super::Reals;
 use super::column::columns;
 use bevy_ecs::prelude::*;
+use std::collections::HashMap;
 
 columns! {
     /// Force of other bodies, and of the body itself, on the node in the last step (N), a vector a node. Exists where
@@ -14,8 +15,9 @@ columns! {
     /// the step, where it touched after the step (m); since the start the length it has slid (m), and what impact and
     /// friction have taken (J). Exists with [`ContactForce`].
     SurfaceTouch(Reals) = "surface_touch", State, Nodes(MEETING_NUMBERS);
-    /// The same of each point of faces: those of a facet after another, as the body's surface has them, and as
-    /// [`face_points`](crate::contact::face_points) orders them. Exists where points of the body's faces meet others.
+    /// The same of each point of faces: those of a facet after another, as the body's surface has them, or where
+    /// [`FacePlaces`] says, and as [`face_points`](crate::contact::face_points) orders them. Exists where points of the
+    /// body's faces meet others.
     FaceTouch(Reals) = "face_touch", State, Other;
 }
 
@@ -49,3 +51,52 @@ pub const MEETING_NUMBERS: usize = 8;
 /// of its own, so that all forces on them are known before they move. On bodies whose surface stays the same.
 #[derive(Component, Clone, Debug)]
 pub struct SurfaceRows(pub Vec<u32>);
+
+/// Where in [`FaceTouch`] the points of each facet are that the body's elements have. Exists on bodies that may lose
+/// elements: each point keeps its place while others go and are laid bare. A facet between two elements is there once,
+/// since only one side of it can be bare.
+#[derive(Component, Clone, Debug, Default)]
+pub struct FacePlaces {
+    /// The first point of a facet, by its corners.
+    firsts: HashMap<[u32; 4], usize>,
+    points: usize,
+}
+
+/// The corners of a facet, whichever way it is seen and begun; a triangle repeats its last one.
+fn corners([a, b, c, d]: [u32; 4]) -> [u32; 4] {
+    let mut corners = [a, b, c, if c == d { u32::MAX } else { d }];
+    corners.sort_unstable();
+    corners
+}
+
+impl FacePlaces {
+    /// Of facets by the author's nodes of their corners, each with how many points it has; some may be there twice.
+    pub fn of(facets: impl Iterator<Item = ([u32; 4], usize)>) -> Self {
+        let mut places = Self::default();
+        for (facet, count) in facets {
+            places.firsts.entry(corners(facet)).or_insert_with(|| {
+                places.points += count;
+                places.points - count
+            });
+        }
+        places
+    }
+
+    /// How many points there are.
+    pub fn points(&self) -> usize {
+        self.points
+    }
+
+    /// The first point of each of such facets, of a body that has places for them or one after the other.
+    pub fn firsts(places: Option<&Self>, facets: impl Iterator<Item = ([u32; 4], usize)>) -> Vec<usize> {
+        let mut next = 0;
+        let first = |(facet, count): ([u32; 4], usize)| {
+            next += count;
+            match places {
+                Some(places) => places.firsts.get(&corners(facet)).copied().unwrap_or(places.points),
+                None => next - count,
+            }
+        };
+        facets.map(first).collect()
+    }
+}

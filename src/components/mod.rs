@@ -63,7 +63,7 @@ pub use column_layout::{Increments, Rows};
 #[doc(hidden)]
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
 #[doc(hidden)]
-pub use contact::{ContactForce, ContactSpring, FaceTouch, MEETING_NUMBERS, SurfaceRows, SurfaceTouch};
+pub use contact::{ContactForce, ContactSpring, FacePlaces, FaceTouch, MEETING_NUMBERS, SurfaceRows, SurfaceTouch};
 #[doc(hidden)]
 pub use free_tool::{FreeMotion, FreeMotions, FreeTool, FreeTools, FreeTouch, MetBody};
 #[doc(hidden)]

@@ -20,7 +20,7 @@ pub struct Edge {
     /// The triangles beside it.
     pub triangles: [u32; 2],
     /// The corners of these across from it.
-    across: [u32; 2],
+    pub across: [u32; 2],
 }
 
 /// Two edges that cross.

@@ -128,9 +128,14 @@ fn gaps_and_slips(body: Entity, surface: &[FacetNow], world: &mut World) -> Resu
         }
     };
     if let Some(touch) = entity.get::<FaceTouch>() {
-        let points = surface.iter().flat_map(|of| face_points(of.facet).iter().map(move |weights| (of, weights)));
-        for (first, (facet, weights)) in (0..touch.len()).step_by(MEETING_NUMBERS).zip(points) {
-            facet.nodes.iter().zip(weights).for_each(|(&node, &weight)| add(node, weight, touch, first));
+        let counted = surface.iter().map(|of| (of.facet, face_points(of.facet).len()));
+        let firsts = FacePlaces::firsts(entity.get::<FacePlaces>(), counted);
+        let room = touch.len() / MEETING_NUMBERS;
+        for (facet, first) in surface.iter().zip(firsts) {
+            for (place, weights) in (first..room).zip(face_points(facet.facet)) {
+                let of_point = MEETING_NUMBERS * place;
+                facet.nodes.iter().zip(weights).for_each(|(&node, &weight)| add(node, weight, touch, of_point));
+            }
         }
     }
     if let Some(touch) = entity.get::<SurfaceTouch>() {

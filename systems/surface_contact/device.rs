@@ -6,7 +6,8 @@
 //! found does not depend on when lists are made.
 
 use super::body_slices::slices;
-use super::{MeetingColumns, Surface, SurfaceContacts, motion, survey};
+use super::words::{FaceWords, Layout};
+use super::{MeetingColumns, SurfaceContacts, motion, survey};
 use crate::backend::cpu::Cpu;
 use crate::backend::device::{Device, bring_to_host};
 use crate::backend::kernel::{BufferId, uniform};
@@ -14,9 +15,6 @@ use crate::components::*;
 use crate::error::Error;
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
-
-/// Triangles near a point that there is room for, on average, and besides.
-const ROOM: [usize; 2] = [16, 4096];
 
 /// Steps of a submission at most, whatever the lists allow.
 const MOST_STEPS: f64 = 4096.0;
@@ -26,14 +24,21 @@ const MOST_STEPS: f64 = 4096.0;
 #[repr(C)]
 pub(super) struct SurfaceContact {
     nodes: u32,
+    points: u32,
+    items: u32,
+    pub contacts: u32,
     triangles: u32,
     bodies: u32,
     pub first: u32,
     pub count: u32,
-    pub body: u32,
+    body: u32,
     around: u32,
     meetings: u32,
     apart: u32,
+    face_points: u32,
+    facets: u32,
+    edges: u32,
+    begins: u32,
     list: u32,
     inverse: u32,
     pub displacements: u32,
@@ -47,6 +52,9 @@ pub(super) struct SurfaceContact {
 }
 uniform!(SurfaceContact {
     nodes,
+    points,
+    items,
+    contacts,
     triangles,
     bodies,
     first,
@@ -55,6 +63,10 @@ uniform!(SurfaceContact {
     around,
     meetings,
     apart,
+    face_points,
+    facets,
+    edges,
+    begins,
     list,
     inverse,
     displacements,
@@ -83,29 +95,8 @@ pub(super) struct OnDevice {
     ahead: u64,
 }
 
-/// Words of `surface_faces` about two bodies that may meet.
-pub(super) const MEETING_WORDS: usize = 6;
-
 /// Words of `surface_motion`.
 pub(super) const MOTION_WORDS: usize = 8;
-
-/// Where parts of `surface_lists` begin.
-struct Layout {
-    list: usize,
-    inverse: usize,
-    displacements: usize,
-    room: usize,
-}
-
-impl Layout {
-    fn of(surface: &Surface) -> Self {
-        let nodes = surface.nodes.len();
-        let room = ROOM[0] * nodes + ROOM[1];
-        let inverse = 1 + nodes + 1 + room;
-        // a triangle has three corners
-        Self { list: 1, inverse, displacements: inverse + nodes + 1 + 3 * room, room }
-    }
-}
 
 /// Finds surfaces and lists as they are, on the host, as a step would.
 pub(crate) fn find(world: &mut World) {
@@ -140,23 +131,26 @@ fn find_lists<T: Scalar>(
 
 impl SurfaceContacts {
     /// What kernels know of the whole, with no body in particular.
-    pub(super) fn uniform(&self, clock: &Clock) -> SurfaceContact {
-        let surface = &self.surface;
-        let (nodes, triangles, bodies) = (surface.nodes.len(), surface.triangles.triangles.len(), self.bodies.len());
-        let around = 8 * triangles;
-        let meetings = around + nodes + 1 + 3 * triangles;
-        let layout = Layout::of(surface);
-        let size = surface.places.iter().map(|at| at.abs().max_element()).fold(0.0, f64::max);
+    pub(super) fn uniform(&self, faces: &FaceWords, clock: &Clock) -> SurfaceContact {
+        let (surface, layout) = (&self.surface, Layout::of(self));
+        let (points, size) = (surface.points.len(), surface.places.iter().map(|at| at.abs().max_element()));
         SurfaceContact {
-            nodes: nodes as u32,
-            triangles: triangles as u32,
-            bodies: bodies as u32,
+            nodes: surface.nodes.len() as u32,
+            points: points as u32,
+            items: (points + surface.crossings.edges.len()) as u32,
+            contacts: layout.contacts as u32,
+            triangles: surface.triangles.triangles.len() as u32,
+            bodies: self.bodies.len() as u32,
             first: 0,
-            count: nodes as u32,
+            count: surface.nodes.len() as u32,
             body: 0,
-            around: around as u32,
-            meetings: meetings as u32,
-            apart: (meetings + MEETING_WORDS * bodies * bodies) as u32,
+            around: faces.around as u32,
+            meetings: faces.meetings as u32,
+            apart: faces.apart as u32,
+            face_points: faces.face_points as u32,
+            facets: faces.facets as u32,
+            edges: faces.edges as u32,
+            begins: faces.begins as u32,
             list: layout.list as u32,
             inverse: layout.inverse as u32,
             displacements: layout.displacements as u32,
@@ -164,103 +158,11 @@ impl SurfaceContacts {
             settling: self.settling as f32,
             margin: (survey::MARGIN * self.edge) as f32,
             // some roundings of a place
-            rounding: (8.0 * f64::from(f32::EPSILON) * size) as f32,
+            rounding: (8.0 * f64::from(f32::EPSILON) * size.fold(0.0, f64::max)) as f32,
             thickness: self.thickness() as f32,
             depth: surface.triangles.depths.iter().copied().fold(0.0, f64::max) as f32,
             relaxed: u32::from(clock.relaxation.is_some()),
         }
-    }
-
-    /// Words of `surface_faces`.
-    pub(super) fn faces(&self) -> Vec<u32> {
-        let surface = &self.surface;
-        let of = &surface.triangles;
-        let mut words = Vec::new();
-        for (number, corners) in of.triangles.iter().enumerate() {
-            words.extend(corners);
-            words.extend(of.beside(number as u32));
-            words.extend([of.bodies[number], (of.depths[number] as f32).to_bits()]);
-        }
-        let rows = |words: &mut Vec<u32>, row: &dyn Fn(u32) -> Vec<u32>| {
-            let (mut starts, mut all) = (vec![0], Vec::new());
-            for node in 0..surface.nodes.len() as u32 {
-                all.extend(row(node));
-                starts.push(all.len() as u32);
-            }
-            words.extend(starts);
-            words.extend(all);
-        };
-        rows(&mut words, &|node| of.around(node).to_vec());
-        for meeting in &self.meetings {
-            let numbers = meeting.map_or([0.0; MEETING_WORDS - 1], |of| {
-                let spring = of.spring.unwrap_or(ContactSpring { share: 0.0, damping: 0.0 });
-                [of.friction[0], of.friction[1], of.thickness, spring.share, spring.damping]
-            });
-            words.push(u32::from(meeting.is_some()));
-            words.extend(numbers.map(|number| (number as f32).to_bits()));
-        }
-        rows(&mut words, &|point| {
-            let begin = surface.apart.partition_point(|&(other, _)| other < point);
-            let end = surface.apart.partition_point(|&(other, _)| other <= point);
-            surface.apart[begin..end].iter().map(|&(_, triangle)| triangle).collect()
-        });
-        words
-    }
-
-    /// Words of `surface_rows`: row and place at rest of each node.
-    pub(super) fn rows(&self, world: &World) -> Vec<u32> {
-        let word = |&(body, row): &(u32, u32)| {
-            let rest = world.get::<RestPosition>(self.bodies[body as usize]);
-            let rest = rest.map_or(self.reference, |rest| rest.0[row as usize]) - self.reference;
-            let [x, y, z] = rest.as_vec3().to_array().map(f32::to_bits);
-            [row, x, y, z]
-        };
-        self.surface.nodes.iter().flat_map(word).collect()
-    }
-
-    /// Words of `surface_lists`. Lists that there is no room for hold nothing: then kernels go through all.
-    pub(super) fn list_words(&self, world: &World) -> Vec<u32> {
-        let surface = &self.surface;
-        let (layout, nodes) = (Layout::of(surface), surface.nodes.len());
-        let lists = &surface.lists;
-        let fits = lists.triangles.len() <= layout.room;
-        let radius = if fits { lists.radius.min(f64::from(f32::MAX)) as f32 } else { -1.0 };
-        let mut words = vec![0; layout.displacements + 3 * nodes];
-        words[0] = radius.to_bits();
-        if fits {
-            let mut inverse: Vec<Vec<u32>> = vec![Vec::new(); nodes];
-            let mut end = 0;
-            let mut listed = lists.points.iter().enumerate().peekable();
-            for point in 0..nodes as u32 {
-                if let Some((place, _)) = listed.next_if(|(_, other)| **other == point) {
-                    for &triangle in lists.triangles(place) {
-                        words[layout.list + nodes + 1 + end] = triangle;
-                        end += 1;
-                        for corner in surface.triangles.triangles[triangle as usize] {
-                            let of_corner = &mut inverse[corner as usize];
-                            if of_corner.last() != Some(&point) {
-                                of_corner.push(point);
-                            }
-                        }
-                    }
-                }
-                words[layout.list + point as usize + 1] = end as u32;
-            }
-            let mut at = 0;
-            for (node, points) in inverse.iter().enumerate() {
-                let begin = layout.inverse + nodes + 1 + at;
-                words[begin..begin + points.len()].copy_from_slice(points);
-                at += points.len();
-                words[layout.inverse + node + 1] = at as u32;
-            }
-        }
-        for (node, &(body, row)) in surface.nodes.iter().enumerate() {
-            if let Some(u) = world.get::<Displacement>(self.bodies[body as usize]) {
-                let bits = u.vector(row as usize).as_vec3().to_array().map(f32::to_bits);
-                words[layout.displacements + 3 * node..layout.displacements + 3 * node + 3].copy_from_slice(&bits);
-            }
-        }
-        words
     }
 
     /// How many steps the lists should hold for, where nodes have come nearer (m) since they were made, and go so far
@@ -302,6 +204,10 @@ pub(super) fn before_steps(world: &mut World) -> Result<u64, Error> {
     let nearer = 2.0 * (length(2, 3) + largest);
     let mut contacts = world.resource_mut::<SurfaceContacts>();
     contacts.surface.figures.unlisted = u64::from(words[4]);
+    if words[5] > 0 {
+        let why = "more than four edges cross one at once, of so many that a GPU has no room for all; the CPU has";
+        return Err(Error::Options(why.into()));
+    }
     let [left, fresh] = [nearer, 0.0].map(|nearer| contacts.steps_ahead(nearer, largest));
     // soon submissions would be short: it is time
     let mut allowed = left;
@@ -326,7 +232,9 @@ fn renew(world: &mut World) -> Result<f64, Error> {
     let steps = contacts.steps_ahead(0.0, contacts.surface.motion.largest);
     let Some(lists) = world.get_resource::<OnDevice>().map(|on_device| on_device.lists) else { return Ok(steps) };
     if let Some(mut device) = world.get_resource_mut::<Device>() {
-        device.gpu().upload(lists, 0, bytemuck::cast_slice(&words))?;
+        for (at, piece) in &words.pieces {
+            device.gpu().upload(lists, 4 * *at as u64, bytemuck::cast_slice(piece))?;
+        }
     }
     Ok(steps)
 }

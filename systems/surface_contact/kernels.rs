@@ -1,13 +1,14 @@
 //! The kernels of contact between surfaces. In a step, for each body: where its surface is
-//! (`shaders/surface_contact_place.wgsl`), where it would go (`surface_contact_foresee`), what it faces
-//! (`surface_contact`). Then in each sweep for all: normal forces (`surface_contact_impulse`), what they do to nodes
-//! (`surface_contact_apply`), and the same with `surface_contact_friction` where there is any. At last, for each body:
-//! its loads (`surface_contact_push`), and what is kept of contacts (`surface_contact_touch`).
+//! (`shaders/surface_contact_place.wgsl`), where it would go (`surface_contact_foresee`), what its nodes and points of
+//! its faces face (`surface_contact`). Then for all: which edges cross (`surface_contact_edges`), into how many shares
+//! masses are split (`surface_contact_share`), and in each sweep normal forces (`surface_contact_impulse`), what they
+//! do to nodes (`surface_contact_apply`), and the same with `surface_contact_friction` where there is any. At last, for
+//! each body: its loads (`surface_contact_push`), and what is kept of contacts (`surface_contact_touch`).
 
-use super::SurfaceContacts;
 use super::device::{MOTION_WORDS, SurfaceContact, find, is_on_device, note};
 use super::gather::OUT;
 use super::meet::{FACES, FREE, SLIDES, STICKS};
+use super::{Meeting, SurfaceContacts};
 use crate::backend::Buffers;
 use crate::backend::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
 use crate::backend::step::with_step;
@@ -26,28 +27,35 @@ struct SurfaceBody {
 }
 uniform!(SurfaceBody { first, count, displacements });
 
-/// Buffers that all have.
+/// Words of a contact beside its nodes and weights, as in `shaders/surface_contacts.wgsl`.
+const CONTACT_WORDS: usize = 20;
+
+/// Buffers that kernels share.
 struct Shared {
-    surface: BufferId,
     faces: BufferId,
     lists: BufferId,
     motion: BufferId,
     nodes: BufferId,
     rows: BufferId,
+    shares: BufferId,
     contacts: BufferId,
+    /// Nodes of a contact at most.
+    parts: usize,
+    /// Whether edges meet.
+    edges: bool,
 }
 
 impl Shared {
-    /// A kernel that goes through surfaces and lists.
+    /// A kernel of contacts, for whom its uniform says.
     fn kernel(&self, entry: &'static str, text: Fragment, surface: BufferId, world: &World) -> Kernel {
+        let parts = format!("const PARTS: u32 = {}u;\n", self.parts);
         let kernel = Kernel::new(entry, entry)
             .fragment(text)
             .fragment(shader!("surface_lists"))
+            .fragment(shader!("surface_contacts"))
+            .fragment(Fragment::new("generated: nodes of a contact", parts))
             .fragment(shader!("row"))
             .bind_uniform::<SurfaceContact>("surface", surface)
-            .bind("surface_faces", self.faces)
-            .bind("surface_lists", self.lists)
-            .bind("surface_motion", self.motion)
             .bind("surface_contacts", self.contacts);
         with_step(kernel, world)
     }
@@ -57,19 +65,101 @@ impl Shared {
         kernel.bind("surface_nodes", self.nodes)
     }
 
-    /// One that goes through the contacts of nodes.
-    fn of_contacts(&self, entry: &'static str, text: Fragment, surface: BufferId, world: &World) -> Kernel {
-        let kernel = self.kernel(entry, text, surface, world);
-        kernel.fragment(shader!("surface_contacts_of")).fragment(shader!("surface_motion"))
+    /// With what may be near what, as long as that holds.
+    fn with_lists(&self, kernel: Kernel) -> Kernel {
+        kernel.bind("surface_lists", self.lists).bind("surface_motion", self.motion)
+    }
+
+    /// That asks how points go against what they face.
+    fn relative(&self, kernel: Kernel) -> Kernel {
+        self.with_nodes(kernel.fragment(shader!("surface_relative")).fragment(shader!("surface_motion")))
+    }
+
+    /// That goes through the contacts of nodes.
+    fn of_nodes(&self, kernel: Kernel) -> Kernel {
+        self.with_lists(kernel).fragment(shader!("surface_contacts_of"))
+    }
+
+    /// That finds contacts.
+    fn begins(&self, kernel: Kernel) -> Kernel {
+        let kernel = kernel.fragment(shader!("surface_contact_begin")).fragment(shader!("surface_facing"));
+        self.with_nodes(self.with_lists(kernel)).fragment(shader!("contact_spring")).bind("surface_faces", self.faces)
+    }
+
+    /// With what is kept of points of a kind.
+    fn with_touch(&self, kernel: Kernel, points: &Points, buffers: &mut dyn Buffers) -> Kernel {
+        let states = [("FREE", FREE), ("FACES", FACES), ("STICKS", STICKS), ("SLIDES", SLIDES), ("OUT", OUT)];
+        let states = states.map(|(name, number)| format!("const {name}: f32 = {number:?};\n")).concat();
+        let (rows, place) = match points.of_faces {
+            true => ("", "point - surface.first"),
+            false => {
+                ("@group(0) @binding(0) var<storage, read> surface_rows: array<u32>;\n", "surface_rows[4u * point]")
+            }
+        };
+        let text = format!(
+            "const TOUCH_NUMBERS: u32 = {MEETING_NUMBERS}u;\n{states}{rows}fn touch_of(point: u32) -> u32 {{\n    \
+             return TOUCH_NUMBERS * ({place});\n}}\n"
+        );
+        let kernel = kernel.fragment(Fragment::new("generated: what is kept of a point", text));
+        let name = if points.of_faces { FaceTouch::NAME } else { SurfaceTouch::NAME };
+        let kernel = kernel.bind(SurfaceTouch::NAME, buffers.column(points.body, name));
+        if points.of_faces { kernel } else { kernel.bind("surface_rows", self.rows) }
+    }
+
+    /// What points of a body face.
+    fn face(&self, points: &Points, world: &World, buffers: &mut dyn Buffers) -> Kernel {
+        let kernel = self.kernel("surface_contact", shader!("surface_contact"), points.surface, world);
+        let what = if points.of_faces { shader!("surface_point_face") } else { shader!("surface_point_node") };
+        let kernel = self.begins(kernel).fragment(what).fragment(shader!("surface_motion"));
+        self.with_touch(kernel, points, buffers).threads(points.of.count)
+    }
+
+    /// What is kept of them.
+    fn touch(&self, points: &Points, world: &World, buffers: &mut dyn Buffers) -> Kernel {
+        let text = shader!("surface_contact_touch");
+        let kernel = self.relative(self.kernel("surface_contact_touch", text, points.surface, world));
+        let kernel = match self.edges && !points.of_faces {
+            true => self.with_lists(kernel).fragment(shader!("surface_touch_edges")).bind("surface_faces", self.faces),
+            false => kernel.fragment(Fragment::new(
+                "generated: no edges begin at a point",
+                "fn note_edges(point: u32, at: u32) {}\n",
+            )),
+        };
+        self.with_touch(kernel, points, buffers).threads(points.of.count)
     }
 }
 
-/// Constants of what is kept of a point, the same here and there.
-fn touch_constants() -> Fragment {
-    let states = [("FREE", FREE), ("FACES", FACES), ("STICKS", STICKS), ("SLIDES", SLIDES), ("OUT", OUT)];
-    let states = states.map(|(name, number)| format!("const {name}: f32 = {number:?};\n")).concat();
-    let text = format!("const TOUCH_NUMBERS: u32 = {MEETING_NUMBERS}u;\n{states}");
-    Fragment::new("generated: what is kept of a point", text)
+/// Nodes of a body, or points of its faces.
+struct Points {
+    body: Entity,
+    of_faces: bool,
+    /// Whether they may face others.
+    face: bool,
+    of: SurfaceContact,
+    surface: BufferId,
+}
+
+impl Points {
+    /// Those that have anything kept, of a body with such a number.
+    fn of_body(contacts: &SurfaceContacts, body: usize, whole: SurfaceContact, buffers: &mut dyn Buffers) -> Vec<Self> {
+        let (surface, nodes) = (&contacts.surface, contacts.surface.nodes.len());
+        let of_row = &contacts.meetings[body * contacts.bodies.len()..(body + 1) * contacts.bodies.len()];
+        let meets = |is: fn(&Meeting) -> bool| of_row.iter().flatten().any(is);
+        let kinds = [(false, meets(|of| !of.faces), meets(|of| of.edges)), (true, meets(|of| of.faces), false)];
+        let mut all = Vec::new();
+        for (of_faces, face, kept) in kinds {
+            let points = if of_faces { &surface.points[nodes..] } else { &surface.points[..nodes] };
+            let first = points.partition_point(|point| (point.body as usize) < body);
+            let count = points.partition_point(|point| point.body as usize <= body) - first;
+            if (face || kept) && count > 0 {
+                let first = if of_faces { nodes + first } else { first };
+                let of = whole.of_body(body as u32, first as u32, count as u32);
+                let uniform = buffers.uniform("surface_contact of a body".into(), &of.bytes());
+                all.push(Self { body: contacts.bodies[body], of_faces, face, of, surface: uniform });
+            }
+        }
+        all
+    }
 }
 
 /// See the module.
@@ -80,91 +170,84 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
         find(world);
     }
     let Some(contacts) = world.get_resource::<SurfaceContacts>() else { return Vec::new() };
-    let whole = contacts.uniform(world.resource::<Clock>());
+    let faces = contacts.face_words();
+    let whole = contacts.uniform(&faces, world.resource::<Clock>());
     let nodes = contacts.surface.nodes.len();
+    let parts = if contacts.surface.points.len() > nodes { 8 } else { 4 };
     let words = |words: Vec<u32>| bytemuck::cast_slice::<u32, u8>(&words).to_vec();
     let shared = Shared {
-        surface: buffers.uniform("surface_contact".into(), &whole.bytes()),
-        faces: buffers.constants("triangles of surfaces".into(), &words(contacts.faces())),
-        lists: buffers.constants("lists of what may be near what".into(), &words(contacts.list_words(world))),
+        faces: buffers.constants("triangles of surfaces".into(), &words(faces.words)),
+        lists: buffers.constants("lists of what may be near what".into(), &words(contacts.list_words(world).whole())),
         motion: buffers.constants("motion of surfaces".into(), &[0; 4 * MOTION_WORDS]),
         nodes: buffers.constants("nodes of surfaces".into(), &vec![0; 4 * 12 * nodes]),
-        rows: buffers.constants("rows of surfaces".into(), &words(contacts.rows(world))),
-        contacts: buffers.constants("contacts".into(), &vec![0; 4 * 24 * 2 * nodes]),
+        rows: buffers.constants("rows of surfaces".into(), &words(contacts.row_words(world))),
+        shares: buffers.constants("shares of nodes of surfaces".into(), &vec![0; 4 * nodes]),
+        contacts: {
+            let count = whole.contacts as usize;
+            buffers.constants("contacts".into(), &vec![0; 4 * (CONTACT_WORDS + 2 * parts) * count])
+        },
+        parts,
+        edges: !contacts.surface.crossings.edges.is_empty(),
     };
     let contacts = contacts.clone();
     if of_device {
         note(shared.lists, shared.motion, world);
     }
-    let of_bodies: Vec<(Entity, SurfaceContact)> = (0..)
-        .zip(&contacts.bodies)
-        .map(|(body, &entity)| {
-            let first = contacts.surface.nodes.partition_point(|(other, _)| *other < body) as u32;
-            let end = contacts.surface.nodes.partition_point(|(other, _)| *other <= body) as u32;
-            (entity, whole.of_body(body, first, end - first))
+    let world = &*world;
+    let bodies = 0..contacts.bodies.len();
+    let points: Vec<Points> =
+        bodies.clone().flat_map(|body| Points::of_body(&contacts, body, whole, buffers)).collect();
+    let mut all = Vec::new();
+    let of_bodies: Vec<(Entity, SurfaceContact)> = bodies
+        .map(|body| {
+            let of = |is: fn(u32, u32) -> bool| {
+                contacts.surface.nodes.partition_point(|(other, _)| is(*other, body as u32)) as u32
+            };
+            let (first, end) = (of(|other, body| other < body), of(|other, body| other <= body));
+            (contacts.bodies[body], whole.of_body(body as u32, first, end - first))
         })
         .collect();
-    let uniforms: Vec<BufferId> =
-        of_bodies.iter().map(|(_, of)| buffers.uniform("surface_contact of a body".into(), &of.bytes())).collect();
-    let mut all = Vec::new();
-    for (body, of) in &of_bodies {
-        all.extend(before(&shared, *body, *of, whole, world, buffers));
+    for &(body, of) in &of_bodies {
+        all.extend(before(&shared, body, of, world, buffers));
     }
-    for ((body, of), &surface) in of_bodies.iter().zip(&uniforms) {
-        let kernel = shared.kernel("surface_contact", shader!("surface_contact"), surface, world);
-        all.push(
-            shared
-                .with_nodes(kernel)
-                .fragment(touch_constants())
-                .fragment(shader!("surface_facing"))
-                .fragment(shader!("contact_spring"))
-                .fragment(shader!("surface_motion_turns"))
-                .bind("surface_rows", shared.rows)
-                .bind(SurfaceTouch::NAME, buffers.column(*body, SurfaceTouch::NAME))
-                .threads(of.count),
-        );
+    all.extend(points.iter().filter(|points| points.face).map(|points| shared.face(points, world, buffers)));
+    let surface = buffers.uniform("surface_contact".into(), &whole.bytes());
+    if shared.edges {
+        let kernel = shared.kernel("surface_contact_edges", shader!("surface_contact_edges"), surface, world);
+        let kernel = shared.begins(kernel).fragment(shader!("surface_motion_turns"));
+        all.push(kernel.bind("surface_rows", shared.rows).threads(contacts.surface.crossings.edges.len() as u32));
     }
-    let sweep = |entry, text, threads| {
-        shared.with_nodes(shared.of_contacts(entry, text, shared.surface, world)).threads(threads).repeated()
+    let share = shared.kernel("surface_contact_share", shader!("surface_contact_share"), surface, world);
+    let share = shared.of_nodes(share).fragment(shader!("surface_motion_turns"));
+    all.push(share.bind("surface_shares", shared.shares).threads(nodes as u32));
+    let of_contacts =
+        |entry, text| shared.relative(shared.kernel(entry, text, surface, world)).threads(whole.contacts).repeated();
+    let apply = || {
+        let kernel = shared.kernel("surface_contact_apply", shader!("surface_contact_apply"), surface, world);
+        let kernel = shared.of_nodes(kernel).fragment(shader!("surface_motion"));
+        shared.with_nodes(kernel).threads(nodes as u32).repeated()
     };
-    let (apply, pairs) = ("surface_contact_apply", 2 * nodes as u32);
-    all.push(sweep("surface_contact_impulse", shader!("surface_contact_impulse"), pairs));
-    all.push(sweep(apply, shader!("surface_contact_apply"), nodes as u32));
+    let impulse = of_contacts("surface_contact_impulse", shader!("surface_contact_impulse"));
+    all.extend([impulse.bind("surface_shares", shared.shares), apply()]);
     if contacts.has_friction() {
-        all.push(sweep("surface_contact_friction", shader!("surface_contact_friction"), pairs));
-        all.push(sweep(apply, shader!("surface_contact_apply"), nodes as u32));
+        all.extend([of_contacts("surface_contact_friction", shader!("surface_contact_friction")), apply()]);
     }
-    for ((body, of), &surface) in of_bodies.iter().zip(&uniforms) {
-        let push = shared.of_contacts("surface_contact_push", shader!("surface_contact_push"), surface, world);
-        all.push(
-            push.bind("surface_rows", shared.rows)
-                .bind(ExternalForce::NAME, buffers.column(*body, ExternalForce::NAME))
-                .bind(ContactForce::NAME, buffers.column(*body, ContactForce::NAME))
-                .threads(of.count),
-        );
-        let touch = shared.of_contacts("surface_contact_touch", shader!("surface_contact_touch"), surface, world);
-        all.push(
-            shared
-                .with_nodes(touch)
-                .fragment(touch_constants())
-                .bind("surface_rows", shared.rows)
-                .bind(SurfaceTouch::NAME, buffers.column(*body, SurfaceTouch::NAME))
-                .threads(of.count),
-        );
+    for &(body, of) in &of_bodies {
+        let surface = buffers.uniform("surface_contact of a body".into(), &of.bytes());
+        let push = shared.kernel("surface_contact_push", shader!("surface_contact_push"), surface, world);
+        let push = shared.of_nodes(push).fragment(shader!("surface_motion")).bind("surface_rows", shared.rows);
+        let columns = [ExternalForce::NAME, ContactForce::NAME];
+        let push = columns.into_iter().fold(push, |kernel, name| kernel.bind(name, buffers.column(body, name)));
+        all.push(push.threads(of.count));
+        let of_body = points.iter().filter(|points| points.body == body);
+        all.extend(of_body.map(|points| shared.touch(points, world, buffers)));
     }
     all
 }
 
 /// Where a body's surface is, and where it would go.
-fn before(
-    shared: &Shared,
-    body: Entity,
-    of: SurfaceContact,
-    whole: SurfaceContact,
-    world: &World,
-    buffers: &mut dyn Buffers,
-) -> [Kernel; 2] {
-    let of_body = SurfaceBody { first: of.first, count: of.count, displacements: whole.displacements };
+fn before(shared: &Shared, body: Entity, of: SurfaceContact, world: &World, buffers: &mut dyn Buffers) -> [Kernel; 2] {
+    let of_body = SurfaceBody { first: of.first, count: of.count, displacements: of.displacements };
     let of_body = buffers.uniform("surface of a body".into(), &of_body.bytes());
     let place = Kernel::new("surface_contact_place", "surface_contact_place")
         .fragment(shader!("surface_contact_place"))

@@ -56,7 +56,8 @@ pub(super) fn follow(
     remember(contacts, bodies, is_other);
 }
 
-/// Clears what nodes bore and touched that are on no surface any more: nobody else would.
+/// Clears what nodes bore and touched, and what points of faces touched, that are on no surface any more: nobody else
+/// would.
 fn clear_apart(contacts: &SurfaceContacts, bodies: &mut Query<(Entity, MeetingColumns)>) {
     for (number, &body) in (0..).zip(&contacts.bodies) {
         let Ok((_, mut columns)) = bodies.get_mut(body) else { continue };
@@ -70,6 +71,13 @@ fn clear_apart(contacts: &SurfaceContacts, bodies: &mut Query<(Entity, MeetingCo
             let touch = MEETING_NUMBERS * row;
             clear(&mut columns.force, 3 * row..3 * row + 3);
             clear(&mut columns.touch, touch..touch + OF_A_STEP);
+        }
+        let Some(touch) = &mut columns.face_touch else { continue };
+        let mut is_there = vec![false; touch.len() / MEETING_NUMBERS];
+        let kept = contacts.surface.kept.iter().filter(|kept| kept.of_face && kept.body == number as usize);
+        kept.for_each(|kept| is_there[kept.first / MEETING_NUMBERS] = true);
+        for (place, _) in is_there.iter().enumerate().filter(|(_, is_there)| !**is_there) {
+            clear(touch, MEETING_NUMBERS * place..MEETING_NUMBERS * place + OF_A_STEP);
         }
     }
 }
@@ -121,7 +129,7 @@ fn survey(
 ) {
     let mut surface = std::mem::take(&mut contacts.surface);
     let (mut triangles, mut owners, mut depths) = (Vec::<[u32; 3]>::new(), Vec::new(), Vec::new());
-    let (mut of_faces, mut facets) = (Vec::<Point>::new(), Vec::new());
+    let (mut of_faces, mut places, mut facets) = (Vec::<Point>::new(), Vec::new(), Vec::new());
     for (number, &body) in (0..).zip(&contacts.bodies) {
         let (Ok(authoring), Ok((_, columns))) = (authorings.get(body), bodies.get(body)) else { continue };
         let is_alive = |block: u32, row: u32| {
@@ -134,9 +142,11 @@ fn survey(
         rows.dedup();
         let first = surface.nodes.len() as u32;
         let number_of = |row: u32| first + rows.binary_search(&row).unwrap_or(0) as u32;
-        // as many as there is room for: all, where the surface is that of the start
-        let mut room = columns.face_touch.map_or(0, |touch| touch.len() / MEETING_NUMBERS);
-        for (face, facet) in faces.iter().flat_map(|face| face.facets().map(move |facet| (face, facet))) {
+        let room = columns.face_touch.map_or(0, |touch| touch.len() / MEETING_NUMBERS);
+        let facets_of = || faces.iter().flat_map(|face| face.facets().map(move |facet| (face, facet)));
+        let counted = facets_of().map(|(_, facet)| (facet, face_points(facet).len()));
+        let firsts = FacePlaces::firsts(columns.face_places, counted);
+        for ((face, facet), first_point) in facets_of().zip(firsts) {
             let first = triangles.len();
             for corners in split(facet, row) {
                 depths.push(
@@ -147,12 +157,12 @@ fn survey(
                 facets.push(facet.map(|node| number_of(row(node))));
             }
             let nodes = facet.map(|node| number_of(row(node)));
-            for (corner, weights) in face_points(facet).iter().enumerate().take(room) {
+            for (corner, weights) in face_points(facet).iter().enumerate().take(room.saturating_sub(first_point)) {
                 let is_on_first = triangles[first].contains(&nodes[corner]);
                 let triangle = Some(if is_on_first { first } else { first + 1 } as u32);
                 of_faces.push(Point { body: number, nodes, weights: *weights, triangle });
+                places.push((first_point + corner) as u32);
             }
-            room = room.saturating_sub(face_points(facet).len());
         }
         for &row in &rows {
             surface.points.push(Point::node(number, surface.nodes.len() as u32));
@@ -160,9 +170,7 @@ fn survey(
         }
     }
     surface.kept = surface.nodes.iter().map(|&(body, row)| kept(body, false, row)).collect();
-    for points in of_faces.chunk_by(|a, b| a.body == b.body) {
-        surface.kept.extend((0..).zip(points).map(|(place, point)| kept(point.body, true, place)));
-    }
+    surface.kept.extend(of_faces.iter().zip(places).map(|(point, place)| kept(point.body, true, place)));
     surface.points.extend(of_faces);
     surface.facets = facets;
     let depths = depths.into_iter().map(|depth| f64::min(depth, DEEPEST * contacts.edge)).collect();

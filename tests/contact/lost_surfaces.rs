@@ -1,7 +1,7 @@
 //! What points bore and touched whose surface is gone, or who face nothing any more.
 
 use crate::bits::start;
-use sinew::components::{ContactForce, Precision, SurfaceTouch};
+use sinew::components::{ContactForce, FaceTouch, Precision, SurfaceTouch};
 use sinew::glam::DVec3;
 use sinew::{Simulation, Snapshot};
 
@@ -13,7 +13,7 @@ const SCENE: &str = "(duration: 0.03, bodies: {
     materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))},
     constraints: [Fixed(body: \"low\", on: Set(\"z0\"))],
     removal: [(body: \"high\", on: Box(min: (0, 0, 0.019), max: (0.02, 0.02, 0.0236)), when: During(start: 0.008, end: 0.02))],
-    contacts: [Between(bodies: (\"low\", \"high\"), friction: 0.3)])";
+    contacts: [Between(bodies: (\"low\", \"high\"), friction: 0.3POINTS)])";
 
 fn bytes(simulation: &mut Simulation) -> Vec<u8> {
     simulation.snapshot().unwrap().to_bytes().unwrap()
@@ -31,22 +31,31 @@ fn forces(simulation: &mut Simulation) -> (DVec3, f64) {
     (sum, size)
 }
 
-/// Nodes that noted how deep they may be and face nothing.
+/// Points that noted how deep they may be and face nothing.
 fn stale(simulation: &mut Simulation) -> usize {
     let mut count = 0;
     for body in ["low", "high"] {
         let entity = simulation.body(body).unwrap();
-        let touch = &simulation.world().get::<SurfaceTouch>(entity).unwrap().0;
-        let all = (0..touch.len()).step_by(sinew::components::MEETING_NUMBERS);
-        count += all.filter(|&first| touch.get(first + 4) == 0.0 && touch.get(first + 3) != 0.0).count();
+        let of_nodes = &simulation.world().get::<SurfaceTouch>(entity).unwrap().0;
+        let of_faces = simulation.world().get::<FaceTouch>(entity).map(|touch| &touch.0);
+        for touch in [Some(of_nodes), of_faces].into_iter().flatten() {
+            let all = (0..touch.len()).step_by(sinew::components::MEETING_NUMBERS);
+            count += all.filter(|&first| touch.get(first + 4) == 0.0 && touch.get(first + 3) != 0.0).count();
+        }
     }
     count
 }
 
 #[test]
 fn a_run_goes_on_from_any_step_while_touching_surfaces_go() {
-    for precision in [Precision::F64, Precision::F32] {
-        let mut whole = start(SCENE, precision, 1);
+    for (precision, points) in [
+        (Precision::F64, ""),
+        (Precision::F32, ""),
+        (Precision::F64, ", points: Faces"),
+        (Precision::F32, ", points: Faces"),
+    ] {
+        let scene = &SCENE.replace("POINTS", points);
+        let mut whole = start(scene, precision, 1);
         let (mut kept, mut touched, mut gone) = (Vec::new(), 0, 0);
         while !whole.is_finished() {
             if whole.step_count() % 7 == 3 {
@@ -64,7 +73,7 @@ fn a_run_goes_on_from_any_step_while_touching_surfaces_go() {
         assert!(touched > 5 && gone == 54, "{touched} nodes touch, {gone} elements are gone");
         for pair in kept.windows(2) {
             let [from, to] = [&pair[0], &pair[1]].map(|bytes| Snapshot::from_bytes(bytes).unwrap());
-            let mut resumed = start(SCENE, precision, 1);
+            let mut resumed = start(scene, precision, 1);
             resumed.restore(&from).unwrap();
             resumed.advance(7).unwrap();
             let found = Snapshot::from_bytes(&bytes(&mut resumed)).unwrap();

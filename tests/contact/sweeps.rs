@@ -43,6 +43,7 @@ fn sweeps_are_listed_once_and_dispatched_as_often_as_the_plan_says() {
     for (what, system, a_sweep) in [
         (apart.replace(" MORE", ""), "surface_contact", 2),
         (apart.replace(" MORE", ", friction: 0.4"), "surface_contact", 4),
+        (apart.replace(" MORE", ", points: Faces, edges: true"), "surface_contact", 2),
         (glued.to_owned(), "glue", 2),
     ] {
         let text = |sweeps: usize| blocks(&what.replace("SWEEPS", &sweeps.to_string()));

@@ -118,27 +118,49 @@ pub fn of_tools() -> Vec<String> {
 }
 
 /// Parts of `surface_contact`.
-pub const SURFACES: [&str; 12] = [
+pub const SURFACES: [&str; 20] = [
     "surface_contact_apply",
+    "surface_contact_begin",
+    "surface_contact_edges",
     "surface_contact_foresee",
     "surface_contact_friction",
     "surface_contact_impulse",
     "surface_contact_place",
     "surface_contact_push",
+    "surface_contact_share",
     "surface_contact_touch",
+    "surface_contacts",
     "surface_contacts_of",
     "surface_facing",
     "surface_lists",
     "surface_motion",
     "surface_motion_turns",
+    "surface_point_face",
+    "surface_point_node",
+    "surface_relative",
+    "surface_touch_edges",
 ];
 
-/// Files of the kernels of bodies that meet.
+/// Bodies that meet with nodes, with points of faces, and with edges.
+pub fn meeting() -> Simulation {
+    let block =
+        |at: f64| format!("(mesh: Box(size: (1, 1, 1), cells: (2, 2, 2)), material: \"m\", translate: (0, 0, {at}))");
+    let text = format!(
+        "(duration: 1, bodies: {{\"a\": {}, \"b\": {}, \"c\": {}}},
+        materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
+        contacts: [Between(bodies: (\"a\", \"b\"), friction: 0.3, edges: true),
+            Between(bodies: (\"b\", \"c\"), points: Faces)])",
+        block(0.0),
+        block(1.0),
+        block(2.0)
+    );
+    let scene = SceneFile::from_text("meeting", &text, std::path::Path::new("."), &[]).unwrap();
+    Simulation::new(&scene, &Options::default()).unwrap()
+}
+
+/// Files of their kernels.
 pub fn of_surfaces() -> Vec<String> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/stacked_blocks.ron");
-    let scene = SceneFile::load(path, &[]).unwrap();
-    let mut simulation = Simulation::new(&scene, &Options::default()).unwrap();
-    let explained = simulation.explain_on_gpu(&Registry::default()).unwrap();
+    let explained = meeting().explain_on_gpu(&Registry::default()).unwrap();
     let fragments = explained.kernels.iter().flat_map(|kernel| &kernel.fragments);
     fragments.filter_map(|f| f.path.strip_prefix("shaders/").map(str::to_owned)).collect()
 }

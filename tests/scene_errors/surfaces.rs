@@ -44,13 +44,9 @@ fn what_is_wrong_with_surfaces_is_told_with_what_is_allowed() {
 }
 
 #[test]
-fn points_of_faces_are_refused_where_elements_may_go() {
+fn points_are_nodes_or_those_of_faces() {
     let faces = "Between(bodies: (\"a\", \"b\"), edges: true, points: Faces)";
     assert_eq!(told(faces, "(0, 0, 0.11)"), "");
-    let goes = format!("{faces}], removal: [(body: \"b\", on: All, when: At(0.05))");
-    let found = told(&goes, "(0, 0, 0.11)");
-    let wanted = "5: error: points of faces need a surface that stays, and `b` may lose elements | `points: Nodes` follows what is laid bare";
-    assert!(found.starts_with(wanted), "{found}");
     let unknown = told("Between(bodies: (\"a\", \"b\"), points: Corners)", "(0, 0, 0.11)");
     assert!(unknown.contains("Corners") && unknown.contains("Faces"), "{unknown}");
 }

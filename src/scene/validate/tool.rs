@@ -5,7 +5,7 @@ use super::names::body_named;
 use super::{Validator, scene, select, show};
 use crate::scene::limits::{MOST_BURST, MOST_SWEEPS, TOOLS_OF_A_BODY};
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{Contact, ContactLaw, Follow, Points, Port, Removal, Scene, Shape, Threshold, Tool, When};
+use crate::scene::schema::{Contact, ContactLaw, Follow, Port, Removal, Scene, Shape, Threshold, Tool, When};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use crate::tools::closest_approach;
@@ -356,9 +356,9 @@ fn law(scene_: &Scene, validator: &mut Validator, path: &Path, contact: &Contact
 
 /// Surfaces that meet: whose, and how.
 fn surfaces(scene_: &Scene, validator: &mut Validator, path: &Path, contact: &Contact) {
-    let (sweeps, thickness, points, of) = match contact {
+    let (sweeps, thickness) = match contact {
         Contact::Tool { .. } => return,
-        Contact::Between { bodies: (a, b), sweeps, thickness, points, .. } => {
+        Contact::Between { bodies: (a, b), sweeps, thickness, .. } => {
             for name in [a, b].into_iter().filter(|name| !scene_.bodies.contains_key(*name)) {
                 let bodies = scene_.bodies.keys().map(String::as_str);
                 let message = format!("there is no body `{name}`");
@@ -368,19 +368,13 @@ fn surfaces(scene_: &Scene, validator: &mut Validator, path: &Path, contact: &Co
                 let note = format!("a body that meets itself: Itself(body: \"{a}\")");
                 validator.out.error_at(path.name("bodies"), format!("`{a}` twice")).note(note);
             }
-            (*sweeps, *thickness, *points, vec![a, b])
+            (*sweeps, *thickness)
         }
-        Contact::Itself { body, sweeps, thickness, points, .. } => {
+        Contact::Itself { body, sweeps, thickness, .. } => {
             body_named(scene_, validator, path, body.as_ref());
-            (*sweeps, *thickness, *points, body.as_ref().or(scene_.bodies.keys().next()).into_iter().collect())
+            (*sweeps, *thickness)
         }
     };
-    if points == Points::Faces
-        && let Some(name) = of.into_iter().find(|name| scene_.may_lose_elements(name))
-    {
-        let message = format!("points of faces need a surface that stays, and `{name}` may lose elements");
-        validator.out.error_at(path.name("points"), message).note("`points: Nodes` follows what is laid bare");
-    }
     validator.not_negative(&path.name("thickness"), thickness, "m");
     if !(1..=MOST_SWEEPS).contains(&sweeps) {
         validator.must(&path.name("sweeps"), &format!("from 1 to {MOST_SWEEPS}"), sweeps);

@@ -260,7 +260,7 @@ fn what_a_step_repeats_is_told_once_with_its_number() {
     ] {
         let (found, told) = explained(sweeps);
         let named = |name: &str, times: usize| (format!("surface_contact{name}"), serde_json::json!(times));
-        let before = ["_place", "_foresee", ""].map(|name| named(name, 1));
+        let before = ["_place", "_foresee", "", "_share"].map(|name| named(name, 1));
         let swept = ["_impulse", "_apply", "_friction", "_apply"].map(|name| named(name, times));
         let after = ["_push", "_touch"].map(|name| named(name, 1));
         assert_eq!(found, [&before[..], &swept, &after].concat(), "{sweeps:?}");
