@@ -245,7 +245,7 @@ fn volume_ratio(world: &World, block: Entity, row: usize) -> f64 {
     let data = world.get::<Block>(block).unwrap();
     let (shape, u) = (world.get::<RestShape>(block).unwrap(), world.get::<Displacement>(data.body).unwrap());
     let law = world.get::<sinew::backend::cpu::BlockLaw<f64>>(block).unwrap();
-    let state = ElementState::of(data, row, world.get::<Connectivity>(block).unwrap(), shape, u, law);
+    let state = ElementState::of(data, row, world.get::<Connectivity>(block).unwrap(), shape, u, law.elastic_of(row));
     state.points().iter().map(|point| point.kinematics.true_j).fold(f64::INFINITY, f64::min)
 }
 

@@ -22,7 +22,8 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
     let shape = world.get::<RestShape>(block).unwrap();
     let displacement = world.get::<Displacement>(data.body).unwrap();
     let law = world.get::<sinew::backend::cpu::BlockLaw<f64>>(block).unwrap();
-    let state = ElementState::of(data, row, world.get::<Connectivity>(block).unwrap(), shape, displacement, law);
+    let elastic = law.elastic_of(row);
+    let state = ElementState::of(data, row, world.get::<Connectivity>(block).unwrap(), shape, displacement, elastic);
     let entries = state.points().iter().flat_map(|point| point.gradient.0).flatten();
     let h = entries.map(|x| x.abs()).fold(0.0, f64::max);
     let number = |k: usize| shape.get(lane_place(row, row_count(data), k));
