@@ -45,10 +45,9 @@ impl BodyParts {
         rows
     }
 
-    /// For each of some rows a number that goes evenly from the first copy's to the last one's.
-    pub fn copy_factors(&self, rows: &[u32], (first, last): (f64, f64)) -> Vec<f64> {
-        let steps = (self.copies.max(2) - 1) as f64;
-        self.copies_of(rows).into_iter().map(|copy| first + (last - first) * copy as f64 / steps).collect()
+    /// For each of some rows the number that its copy has.
+    pub fn of_rows(&self, rows: &[u32], of_copies: &[f64]) -> Vec<f64> {
+        self.copies_of(rows).into_iter().map(|copy| of_copies[copy]).collect()
     }
 
     /// For each of some rows which copy it belongs to.

@@ -62,8 +62,7 @@ fn bore(tool: &schema::Tool) -> Option<f64> {
 
 /// Warns of tissue that is drawn into the mouth without end.
 fn soft(body: &BodyParts, (number, suction): (usize, &schema::Suction), world: &World, diagnostics: &mut Diagnostics) {
-    let young =
-        |of: Stiffness| (of.shear * (3.0 * of.lambda + 2.0 * of.shear) / (of.lambda + of.shear), of.eta);
+    let young = |of: Stiffness| (of.shear * (3.0 * of.lambda + 2.0 * of.shear) / (of.lambda + of.shear), of.eta);
     // fibres stiffen it
     let materials = body.blocks.iter().flat_map(|&block| stiffnesses(world, block));
     let softest = materials.map(young).filter(|of| of.1 == 0.0).map(|of| of.0).reduce(f64::min);

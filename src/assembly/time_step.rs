@@ -1,8 +1,8 @@
 //! The stable step, from the element bound, and the elements that set it.
 
 use super::body_columns::stiffnesses;
-use crate::backend::cpu::PerCopyLaw;
 use crate::backend::cpu::Cpu;
+use crate::backend::cpu::PerCopyLaw;
 use crate::components::*;
 use crate::elements::with_element_of;
 use crate::elements::{Element, MOST_ROWS};

@@ -52,7 +52,8 @@ pub(super) fn family_directions(families: &[(ExponentialFibre<f32>, FamilyDirect
 
 /// A fragment with a variable of each invocation's own in place of a uniform of that name.
 pub(super) fn private(fragment: &Fragment, name: &str) -> Fragment {
-    let text = fragment.text.replace(&format!("@group(0) @binding(0) var<uniform> {name}:"), &format!("var<private> {name}:"));
+    let text =
+        fragment.text.replace(&format!("@group(0) @binding(0) var<uniform> {name}:"), &format!("var<private> {name}:"));
     Fragment::new(fragment.path.clone(), text)
 }
 

@@ -30,6 +30,8 @@ pub struct Effects {
     pub moved: bool,
     /// Two copies of each body, with loads that differ.
     pub copies: bool,
+    /// Parameters of the law, and of fibres where there are, that differ from copy to copy: see [`VARIED`].
+    pub varied: Option<&'static str>,
     pub compensated: bool,
     pub energies: bool,
     pub removal: bool,
@@ -69,6 +71,18 @@ pub const LAWS: [&str; 10] = [
     "law: (energy: \"c1*I1bar_minus_3 + c2*I2bar_minus_3 + c/2*(exp(b*I1bar_minus_3^2) - 1) + kappa/4*(J^2 - 1 - 2*log(J))\", parameters: {\"c1\": 300, \"c2\": 150, \"c\": 20, \"b\": 0.4, \"kappa\": 10000})",
     GROWING,
     "corotational: Moduli(shear: 1034, bulk: 10000)",
+];
+
+/// For each of the built-in laws of [`LAWS`] numbers that two copies may have.
+pub const VARIED: [(&str, &str); 8] = [
+    (LAWS[0], "\"tissue.linear.shear\": Values([700, 1500])"),
+    (LAWS[1], "\"tissue.st_venant_kirchhoff.bulk\": Values([8000, 15000])"),
+    (LAWS[2], "\"tissue.neo_hookean.shear\": Linear(1500, 700), \"tissue.neo_hookean.bulk\": Linear(9000, 12000)"),
+    (LAWS[3], "\"tissue.stable_neo_hookean.shear\": Values([700, 1500])"),
+    (LAWS[4], "\"tissue.mooney_rivlin.c10\": Values([200, 400]), \"tissue.mooney_rivlin.c01\": Values([100, 300])"),
+    (LAWS[5], "\"tissue.ogden.terms[0].alpha\": Values([1.3, 2.5]), \"tissue.ogden.terms[1].mu\": Values([2, 5])"),
+    (LAWS[6], "\"tissue.arruda_boyce.locking_stretch\": Values([1.8, 2.6])"),
+    (LAWS[9], "\"tissue.corotational.shear\": Values([700, 1500])"),
 ];
 
 /// An energy whose terms of first order cancel as it is written.
@@ -140,6 +154,13 @@ impl Effects {
         }
         all.push(Self::all());
         all.push(Self { copies: true, loads: true, ..Self::default() });
+        for (law, varied) in VARIED {
+            let own = Self { copies: true, law: Some(law), varied: Some(varied), ..Self::default() };
+            all.push(Self { averaged: law == LAWS[2], ..own.clone() });
+            let families = (law != LAWS[0]).then_some(FAMILIES);
+            let fibres = (law != LAWS[0]).then_some(AROUND);
+            all.push(Self { families, fibres, removal: true, prony: 1, scheme: Scheme::TwoPass, ..own });
+        }
         all.push(Self { averaged: true, ..Self::default() });
         all.push(Self { grabs: true, ..Self::default() });
         all.push(Self { averaged: true, ..Self::all() });
@@ -172,9 +193,18 @@ impl Effects {
         let damping = if self.damping { "damping: 20," } else { "" };
         let inversion = self.inversion.map_or(String::new(), |word| format!("inversion: {word},"));
         let (copies, per_copy) = match self.copies {
-            true => ("copies: 2, apart: (0.001, 0, 0),", "per_copy: (0.5, -2),"),
+            true => ("copies: 2, apart: (0.001, 0, 0),", "per_copy: Linear(0.5, -2),"),
             false => ("", ""),
         };
+        let mut varied: Vec<&str> = self.varied.into_iter().collect();
+        if self.varied.is_some() && self.fibres.is_some() {
+            varied.push("\"tissue.fibres.eta\": Values([1000, 3000])");
+        }
+        if self.varied.is_some() && self.families.is_some() {
+            varied.push("\"tissue.exponential_fibres[0].k1\": Values([900, 500])");
+            varied.push("\"tissue.exponential_fibres[1].k2\": Values([0.1, 0.4])");
+        }
+        let varied = varied.join(", ");
         let both = |text: &str| {
             ["tets", "hexes"].map(|body| text.replace("BODY", body).replace("PER_COPY", per_copy)).concat()
         };
@@ -227,7 +257,7 @@ impl Effects {
                 false => format!("Ellipsoid(radii: (0.05, 0.04, 0.06), across: 6, elements: {kind})"),
             };
             format!(
-                "(mesh: {mesh}, material: \"tissue\", {copies}
+                "(mesh: {mesh}, material: \"tissue\", {copies} per_copy: {{{varied}}},
                   regions: [(on: Box(min: (0, -1, -1), max: (1, 1, 1)), material: \"plain\")])"
             )
         };

@@ -1,6 +1,6 @@
 //! `element_forces`.
 
-use super::kernel_worlds::{ALONG, AROUND, Effects, FAMILIES, GROWING, LAWS, scale_strains, small_strains};
+use super::kernel_worlds::{ALONG, AROUND, Effects, FAMILIES, GROWING, LAWS, VARIED, scale_strains, small_strains};
 use super::magnitude::{OGDEN_ROUNDINGS, ROUNDINGS, magnitude};
 use super::pair::{Pair, UNIT, entities, run};
 use bevy_ecs::prelude::*;
@@ -215,6 +215,22 @@ fn laws_of_the_ladder_exert_the_same_forces() {
                 Effects { law: Some(law), averaged, families, prony: 1, reproject: true, ..Effects::default() };
             compare_element_forces(&viscous, |_| {});
         }
+    }
+}
+
+/// Parameters that differ from copy to copy, with every built-in law: alone, and with all that a material can have.
+#[test]
+fn copies_of_differing_laws_exert_the_same_forces() {
+    for (number, (law, varied)) in VARIED.into_iter().enumerate() {
+        let averaged = number % 2 == 1;
+        let own = Effects { copies: true, law: Some(law), varied: Some(varied), averaged, ..Effects::default() };
+        compare_element_forces(&own, |_| {});
+        let fibrous = !law.starts_with("linear");
+        let (fibres, families) = (fibrous.then_some(ALONG), fibrous.then_some(FAMILIES));
+        compare_element_forces(
+            &Effects { fibres, families, volumetric: true, prony: 2, averaged: false, ..own },
+            |_| {},
+        );
     }
 }
 

@@ -44,10 +44,10 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
     let spread = state.displacements[..nodes].iter().flatten().map(|x| x.abs()).fold(0.0, f64::max);
     // terms of h itself cancel: a gradient is a sum of seven products at most
     let h = h.max(spread * gradients);
-    let eta = law.fibres.as_ref().map_or(0.0, |(fibres, _)| fibres.eta);
-    let [shear, bulk] = law.elastic.small_strain_moduli();
+    let eta = law.fibres_of(row).map_or(0.0, |(fibres, _)| fibres.eta);
+    let [shear, bulk] = elastic.small_strain_moduli();
     // a family's stress grows by exp(k₂Ē²), and its rounding by 2k₂Ē² times that
-    let families = law.exponential.iter().map(|(family, _)| {
+    let families = law.families_of(row).map(|(family, _)| {
         let strain = 2.0 * h * (1.0 + h);
         let exponent = family.k2 * strain * strain;
         4.0 * family.k1 * exponent.exp() * (1.0 + 2.0 * exponent)

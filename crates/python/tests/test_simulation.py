@@ -217,7 +217,7 @@ def test_the_interpreter_is_released(cube: sinew.Scene) -> None:
 def test_copies_are_parted() -> None:
     scene = sinew.Scene.from_text(
         BLOCK.replace('material: "tissue")', 'material: "tissue", copies: 5)').replace(
-            "share: Total", "share: Total, per_copy: (-1, 1)"
+            "share: Total", "share: Total, per_copy: Linear(-1, 1)"
         )
     )
     simulation = sinew.Simulation(scene, backend="cpu")

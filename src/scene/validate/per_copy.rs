@@ -14,9 +14,7 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
         if body.per_copy.is_empty() {
             continue;
         }
-        if body.copies < 2 {
-            let told = validator.out.error_at(&path, "the body has one copy only");
-            told.note("give the body `copies`, or leave `per_copy` out");
+        if !has_copies(validator, &path, body) {
             continue;
         }
         let mut places = BTreeSet::new();
@@ -33,6 +31,31 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
             materials(file, body, &path, validator);
         }
     }
+}
+
+/// Looks at what an action on a body, the only one where none is named, is multiplied with in each copy.
+pub(super) fn of_body(
+    scene_: &Scene,
+    validator: &mut Validator,
+    path: &Path,
+    name: Option<&String>,
+    values: Option<&PerCopy>,
+) {
+    let body = name.map_or(scene_.bodies.values().next(), |name| scene_.bodies.get(name));
+    let (Some(body), Some(values)) = (body, values) else { return };
+    let path = path.name("per_copy");
+    if has_copies(validator, &path, body) {
+        numbers(validator, &path, values, body.copies);
+    }
+}
+
+/// Whether a body has copies that may differ.
+fn has_copies(validator: &mut Validator, path: &Path, body: &Body) -> bool {
+    if body.copies < 2 {
+        let told = validator.out.error_at(path, "the body has one copy only");
+        told.note("give the body `copies`, or leave `per_copy` out");
+    }
+    body.copies > 1
 }
 
 /// Looks whether a key leads to a parameter that may differ, and nothing else has led there.
@@ -98,6 +121,17 @@ fn materials(file: &SceneFile, body: &Body, path: &Path, validator: &mut Validat
     for name in body.materials().collect::<BTreeSet<&str>>() {
         let Some(material) = file.scene.materials.get(name) else { continue };
         let Some(copied) = CopiedMaterial::of(body, name, material) else { continue };
+        let mut of_all = file.diagnostics();
+        material::validate_material(
+            &mut Validator { out: &mut of_all },
+            &scene("materials").name(name),
+            name,
+            material,
+        );
+        if of_all.has_errors() {
+            // told already
+            continue;
+        }
         for copy in 0..body.copies as usize {
             let mut told = file.diagnostics();
             let of_copy = copied.of_copy(copy);

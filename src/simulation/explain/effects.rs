@@ -72,7 +72,8 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
             name: "parameters per copy",
             on: entity.get::<PerCopyLaw>().map(|PerCopyLaw(copies)| {
                 let moduli = copies.of_copy.iter().map(|of_copy| of_copy.elastic.small_strain_moduli()[0]);
-                let ends = moduli.fold((f64::INFINITY, 0.0_f64), |(low, high), shear| (low.min(shear), high.max(shear)));
+                let ends =
+                    moduli.fold((f64::INFINITY, 0.0_f64), |(low, high), shear| (low.min(shear), high.max(shear)));
                 let (low, high) = (short(ends.0), short(ends.1));
                 format!("{} copies, shear moduli from {low} to {high} Pa", copies.of_copy.len())
             }),
