@@ -250,7 +250,8 @@ fn draws_are_the_same_in_every_run_and_independent() {
         [("a", 0), ("a", 0), ("b", 0), ("a", 1)].map(|(name, seed)| uniform(seed).values(name, 4000));
     let of = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>() / x.len() as f64;
     assert_eq!(one, again);
-    // uniform on (-1, 1): a mean of squares of 1/3; means of 4000 products lie within 5 deviations, 1/3 and 0.3 over √4000
+    // uniform on (-1, 1): a mean of squares of 1/3; means of 4000 products lie within 5 deviations, those of squares of
+    // 0.3/√4000, of two draws of 1/3 over √4000
     assert!((of(&one, &one) - 1.0 / 3.0).abs() < 5.0 * 0.3 / 4000_f64.sqrt(), "{}", of(&one, &one));
     for others in [&other, &seeded] {
         assert!(of(&one, others).abs() < 5.0 / 3.0 / 4000_f64.sqrt(), "{}", of(&one, others));
@@ -261,4 +262,26 @@ fn draws_are_the_same_in_every_run_and_independent() {
     let below = drawn.iter().filter(|x| **x < 100.0).count() as f64;
     assert!((below - 2000.0).abs() < 2.5 * 4000_f64.sqrt(), "{below}");
     assert_eq!(PerCopy::Linear(1.0, 3.0).values("", 5), [1.0, 1.5, 2.0, 2.5, 3.0]);
+}
+
+/// The step follows the copy that stiffens most, which is not the stiffest one at rest: its fibres stiffen
+/// exponentially as all are pulled alike.
+#[test]
+fn the_step_follows_the_copy_that_stiffens_most() {
+    for run in configurations() {
+        let mut simulation = run.start(
+            "(duration: 1, bodies: {\"b\": (mesh: Box(size: (0.02, 0.02, 0.04), cells: (2, 2, 4), elements: Tet4), material: \"m\",
+                copies: 3, per_copy: {\"m.neo_hookean.young\": Values([3e3, 6e3, 1e3]),
+                    \"m.exponential_fibres[0].k2\": Values([0.1, 0.1, 8])})},
+            materials: {\"m\": (density: 1000, damping: 50, neo_hookean: Young(young: 3e3, poisson: 0.4),
+                exponential_fibres: [(k1: 300, k2: 1, direction: Along(0, 0, 1))])},
+            constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0)),
+                Prescribed(on: Plane(normal: (0, 0, 1), at: 0.04), displacement: (0, 0, 0.02), curve: Smooth(end: 0.2))])",
+        );
+        let first = simulation.time_step();
+        simulation.advance_to(0.25).unwrap_or_else(|error| panic!("{}: {error}", run.name));
+        let (step, limit) = (simulation.time_step(), simulation.stable_limit().unwrap().unwrap());
+        assert!(step < 0.5 * first && step <= limit, "{}: {step} s of {limit} s, {first} s at first", run.name);
+        assert!(simulation.guards().imbalance.abs() < 0.01, "{}: {:?}", run.name, simulation.guards());
+    }
 }
