@@ -102,7 +102,7 @@ fn parts_bring_bodies_whose_copies_differ() {
         per_copy: {\"m.neo_hookean.young\": Values([2e3, -1])})},
     materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))})";
     let files = std::collections::BTreeMap::from([("part.ron".to_string(), part.as_bytes().to_vec())]);
-    let text = "(duration: 0.1, parts: {\"p\": (file: \"part.ron\")})";
+    let text = "(duration: 0.1, parts: {\"p\": (scene: \"part.ron\")})";
     let scene = sinew::SceneFile::from_memory("scene.ron", text, files, &[]).unwrap();
     let mut told = scene.diagnostics();
     sinew::scene::validate(&scene, &mut told);

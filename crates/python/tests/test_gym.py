@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from typing import Any
 
 import numpy as np
 import pytest
@@ -93,7 +94,7 @@ def same(one: object, other: object) -> bool:
 
 @pytest.mark.parametrize("workers", [1, 3])
 def test_environments_side_by_side_are_those_of_gymnasium(workers: int) -> None:
-    words = {"actions": {"grip": (-2.0, 2.0)}, "observe": ["top"], "reward": height, "backend": "cpu"}
+    words: dict[str, Any] = {"actions": {"grip": (-2.0, 2.0)}, "observe": ["top"], "reward": height, "backend": "cpu"}
     soft = sinew.Scene.from_text(BLOCK)
     stiff = sinew.Scene.from_text(BLOCK, set={"materials.tissue.density": 2000.0})
     scenes = [soft, stiff, soft]
@@ -117,7 +118,7 @@ def test_environments_side_by_side_are_those_of_gymnasium(workers: int) -> None:
 
 
 def test_a_vector_of_one_scene() -> None:
-    words = {"actions": ["grip"], "observe": ["block.displacements"], "reward": height, "backend": "cpu"}
+    words: dict[str, Any] = {"actions": ["grip"], "observe": ["block.displacements"], "reward": height, "backend": "cpu"}
     scene = sinew.Scene.from_text(BLOCK)
     env = TissueVectorEnv(scene, 2, **words)
     seen, _ = env.reset(seed=1)
