@@ -45,7 +45,7 @@ pub enum Constraint {
         center: DVec3,
         /// What the motion is multiplied with on each of the body's copies; not with a rotation.
         #[serde(default)]
-        per_copy: Option<PerCopy>,
+        per_copy: Option<Box<PerCopy>>,
         /// Course in time.
         #[serde(default)]
         curve: Curve,

@@ -13,7 +13,7 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
         select::validate(validator, &path.name("on"), on);
         validate_axes(validator, &path.name("axes"), axes);
         if let Constraint::Prescribed { body, rotation, per_copy: Some(values), .. } = constraint {
-            per_copy::of_body(scene_, validator, &path, body.as_ref(), Some(values));
+            per_copy::of_body(scene_, validator, &path, body.as_ref(), Some(&**values));
             if *rotation != DVec3::ZERO {
                 validator
                     .out

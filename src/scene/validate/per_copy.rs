@@ -107,7 +107,7 @@ fn numbers(validator: &mut Validator, path: &Path, values: &PerCopy, copies: u32
             validator.out.error_at(path, format!("`LogUniform` lies between numbers above 0, found {found}"));
             false
         }
-        PerCopy::Uniform { from, to, .. } | PerCopy::LogUniform { from, to, .. } if !(from <= to) => {
+        PerCopy::Uniform { from, to, .. } | PerCopy::LogUniform { from, to, .. } if from > to => {
             let message = format!("`from` must not be above `to`, found {} and {}", show(*from), show(*to));
             validator.out.error_at(path, message);
             false
