@@ -65,7 +65,7 @@ fn place(
     key: &str,
     places: &mut BTreeSet<(String, String)>,
 ) -> Result<(), (String, Vec<String>)> {
-    let example = vec!["such as \"tissue.neo_hookean.young\", a parameter of the material `tissue`".to_string()];
+    let example = vec!["such as \"tissue.fibres.eta\", a parameter of the material `tissue`".to_string()];
     let (name, way) = split(key).map_err(|message| (message, example))?;
     let used: Vec<&str> = body.materials().collect();
     let Some(found) = scene_.materials.get(&name).filter(|_| used.contains(&name.as_str())) else {
