@@ -1,10 +1,11 @@
 // Forces of deformed elements on their corners; twin of systems/element_forces.rs. two_pass.wgsl or patches.wgsl sums
 // them. The element's and the material's fragments say how, note_inverted or remove_inverted what becomes of J <
-// LEAST_J; LEAST_J, isochoric_stress and viscous_pressure are generated.
+// LEAST_J; LEAST_J, isochoric_stress and viscous_pressure are generated; take_law is in law_of_all.wgsl.
 @group(0) @binding(0) var<storage, read> rest_shape: array<f32>;
 
 // N
 fn forces_of(element: u32) -> array<vec3<f32>, NODES> {
+    take_law(element);
     let e = element_of(element);
     let mean = mean_pressure(element, e);
     var forces = Forces();

@@ -1,6 +1,7 @@
 // Elastic energy per rest volume (J/m³) of an element; fibres_energy_at is generated. Twin of BlockView::energy in
 // src/evaluation/block.rs.
 fn energy_density(element: u32, e: Element) -> f32 {
+    take_law(element);
     var sum = 0.0;
     var volume = 0.0;
     for (var point = 0u; point < POINTS; point++) {

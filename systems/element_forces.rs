@@ -132,7 +132,9 @@ impl BlockPartsItem<'_, '_> {
         let block = self.block;
         let length = patch_length(block.kind);
         let rows = patches.iter().flat_map(|patch| patch * length..block.count.min((patch + 1) * length));
-        let state = |row: usize| ElementState::of(block, row, self.connectivity, self.shape, displacement, self.law);
+        let state = |row: usize| {
+            ElementState::of(block, row, self.connectivity, self.shape, displacement, self.law.elastic_of(row))
+        };
         let is_inverted = |row: &usize| state(*row).is_inverted();
         match (self.policy, &mut self.removal) {
             _ if patches.is_empty() => {}

@@ -5,7 +5,7 @@ mod kernel_units;
 mod kernel_worlds;
 use bevy_ecs::prelude::World;
 use kernel_support::SUPPORT;
-use kernel_worlds::{AROUND, Described, Effects, Grouped, OF_NODES, all_kernels, shared_kernels};
+use kernel_worlds::{AROUND, Described, Effects, Grouped, OF_NODES, VARIED, all_kernels, shared_kernels};
 use sinew::backend::Buffers;
 use sinew::backend::dispatch::{Dispatched, ElementsThenNodes, decide_interior_nodes, decide_many_steps};
 use sinew::backend::kernel::{BindingKind, Composer, Kernel, Layout, MostBuffers, Uniform};
@@ -289,6 +289,7 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
         "point",
         "point_pressure",
         "row",
+        "law_of_all",
         "internal_work",
         "step",
         "tensor",
@@ -298,7 +299,9 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
     ];
     assert_eq!(files, expected.map(|stem| format!("{stem}.wgsl")).iter().map(String::as_str).collect());
     let without = buffers(&Effects::default());
-    let cases: [(Effects, &[&str], &[&str]); 11] = [
+    let varied = Some(VARIED[2].1);
+    let cases: [(Effects, &[&str], &[&str]); 12] = [
+        (Effects { copies: true, varied, ..Effects::default() }, &[], &["law_numbers"]),
         (Effects { grabs: true, ..Effects::default() }, &["grab", "external_force"], &["grabs", "external_force"]),
         (Effects { scheme: Scheme::TwoPass, ..Effects::default() }, &["two_pass", "corner"], &["connectivity"]),
         (Effects { inversion: Some("Remove"), ..Effects::default() }, &["remove_inverted"], &["removal_step"]),

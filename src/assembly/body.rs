@@ -3,9 +3,10 @@
 use super::body_columns::block_corners;
 use super::fibres::Members;
 use super::locality::{element_order, node_rows};
-use super::material::called_for;
+use super::material::{called_for, parameters_of_copies};
 use super::patches::{insert_forces, strided};
 use super::{Assembly, PlacedMesh, select};
+use crate::backend::cpu::{LawCopies, PerCopyLaw};
 use crate::components::*;
 use crate::elements::{Element, MOST_NODES};
 use crate::elements::{averages, node_count, with_element, with_element_of};
@@ -17,6 +18,7 @@ use crate::scene::diagnostic::Diagnostics;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A body's entity and what is known of it in the author's numbering.
 pub struct BodyParts {
@@ -43,10 +45,9 @@ impl BodyParts {
         rows
     }
 
-    /// For each of some rows a number that goes evenly from the first copy's to the last one's.
-    pub fn copy_factors(&self, rows: &[u32], (first, last): (f64, f64)) -> Vec<f64> {
-        let steps = (self.copies.max(2) - 1) as f64;
-        self.copies_of(rows).into_iter().map(|copy| first + (last - first) * copy as f64 / steps).collect()
+    /// For each of some rows the number that its copy has.
+    pub fn of_rows(&self, rows: &[u32], of_copies: &[f64]) -> Vec<f64> {
+        self.copies_of(rows).into_iter().map(|copy| of_copies[copy]).collect()
     }
 
     /// For each of some rows which copy it belongs to.
@@ -103,7 +104,7 @@ pub(super) fn spawn(
             element_rows[element as usize] = (place as u32, row as u32);
         }
         let (kind, material) = (*kind, assembly.materials[*material]);
-        let builder = BlockBuilder { assembly, mesh, node_rows: &node_rows, kind, material, elements };
+        let builder = BlockBuilder { assembly, mesh, copies, node_rows: &node_rows, kind, material, elements };
         blocks.push(builder.spawn(world, body, name, diagnostics));
     }
     let authoring = Authoring {
@@ -155,6 +156,7 @@ fn element_materials<'a>(
 struct BlockBuilder<'a> {
     assembly: &'a Assembly<'a>,
     mesh: &'a Mesh,
+    copies: usize,
     node_rows: &'a [u32],
     kind: ElementKind,
     material: Entity,
@@ -164,12 +166,17 @@ struct BlockBuilder<'a> {
 impl BlockBuilder<'_> {
     fn spawn(&self, world: &mut World, body: Entity, name: &str, diagnostics: &mut Diagnostics) -> Entity {
         let law = ElasticLaw::of(world.entity(self.material));
-        let young = law.map_or(0.0, |law| young(law.small_strain_moduli()));
+        let of_all = law.map_or(0.0, |law| young(law.small_strain_moduli()));
         let hourglass = self.assembly.scene.scene.bodies[name].hourglass;
         let material_name = world.get::<Label>(self.material).map(|label| label.0.clone()).unwrap_or_default();
         let members = Members { mesh: self.mesh, elements: self.elements, body: name, material: &material_name };
         let material = &called_for(&self.assembly.scene.scene.materials[&material_name]);
         let (fibre_directions, varying) = members.directions(material, self.assembly.precision, diagnostics);
+        let per_copy = self.per_copy(name, &material_name);
+        let stiffness = |row: usize| {
+            let of_copy = per_copy.as_ref().map(|copies| young(copies.of_row(row).elastic.small_strain_moduli()));
+            hourglass * of_copy.unwrap_or(of_all)
+        };
         let block = Block {
             body,
             material: self.material,
@@ -180,7 +187,7 @@ impl BlockBuilder<'_> {
             simple: self.is_simple(),
             fibre_directions,
         };
-        let shapes = with_element_of!(block, E => self.rest_shapes::<E>(hourglass * young));
+        let shapes = with_element_of!(block, E => self.rest_shapes::<E>(stiffness));
         let connectivity = self.connectivity();
         let mut entity = world.spawn((
             Label(format!("{name}/{material_name}/{:?}", self.kind)),
@@ -203,7 +210,19 @@ impl BlockBuilder<'_> {
         if let Some(directions) = varying {
             entity.insert(FibreDirection(directions));
         }
+        if let Some(copies) = per_copy {
+            entity.insert(PerCopyLaw(Arc::new(copies)));
+        }
         entity.id()
+    }
+
+    /// The parameters of each copy, where they differ.
+    fn per_copy(&self, body: &str, material: &str) -> Option<LawCopies<f64>> {
+        let scene = &self.assembly.scene.scene;
+        let of_copy = parameters_of_copies(scene, scene, body, material)?;
+        let points = self.mesh.points.len().div_ceil(self.copies).max(1);
+        let copies = self.elements.iter().map(|&element| self.mesh.element(element as usize)[0] / points as u32);
+        Some(LawCopies::new(of_copy, copies.collect()))
     }
 
     fn padded(&self) -> usize {
@@ -237,13 +256,13 @@ impl BlockBuilder<'_> {
         with_element!(self.kind, E => self.elements.iter().all(|&e| <E as Element>::Specialisation::describes(&self.points(e)[..E::NODES])))
     }
 
-    /// Rest shapes for an element type.
-    fn rest_shapes<E: Element>(&self, young: f64) -> Reals {
+    /// Rest shapes for an element type, whose hourglass control is as stiff as `young` says of each row (Pa).
+    fn rest_shapes<E: Element>(&self, young: impl Fn(usize) -> f64) -> Reals {
         let mut shapes = Reals::zeros(self.assembly.precision, self.padded() * E::ROWS);
         for row in 0..self.padded() {
             // elements that fill up the last group have the last element's shape and no volume
-            let element = self.elements[row.min(self.elements.len() - 1)];
-            let shape = E::rest_shape(&self.points(element)[..E::NODES], young);
+            let last = row.min(self.elements.len() - 1);
+            let shape = E::rest_shape(&self.points(self.elements[last])[..E::NODES], young(last));
             for k in 0..E::ROWS {
                 let exerts = Some(k) == E::FORCE_ROW || k == E::VOLUME_ROW;
                 let number = if exerts && row >= self.elements.len() { 0.0 } else { shape[k] };

@@ -1,7 +1,7 @@
 //! Node columns of a body, and what blocks need once the time step is known.
 
 use super::Assembly;
-use crate::backend::cpu::{BlockLaw, OwnKernels};
+use crate::backend::cpu::{BlockLaw, LawParameters, OwnKernels, PerCopyLaw};
 use crate::components::*;
 use crate::elements::Stiffness;
 use crate::elements::{node_count, point_count};
@@ -13,6 +13,7 @@ use crate::mesh::{ElementKind, Mesh};
 use crate::scene::schema::{Constraint, Guard, ImplicitScheme, Solver};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// Rest positions, masses and the columns of motion. Optional columns come with what calls for them.
 pub(super) fn insert_node_columns(
@@ -67,9 +68,8 @@ pub(super) fn insert_node_columns(
         }
     }
     entity.insert(FirstNonFinite(vec![u32::MAX; 2]));
-    let used =
-        std::iter::once(&scene.bodies[name].material).chain(scene.bodies[name].regions.iter().map(|r| &r.material));
-    let damped = used.into_iter().any(|material| scene.materials[material].damping.is_some_and(|rate| rate != 0.0));
+    let mut used = scene.bodies[name].materials();
+    let damped = used.any(|material| scene.materials[material].damping.is_some_and(|rate| rate != 0.0));
     let (mass, damping) = nodal_masses(&authoring.blocks, count, world);
     let mut entity = world.entity_mut(body);
     entity.insert(Mass(Reals::from_f64(precision, mass.into_iter())));
@@ -118,19 +118,28 @@ pub fn nodal_masses(entities: &[Entity], count: usize, world: &World) -> (Vec<f6
     (mass, damping)
 }
 
-/// What the stable step depends on, of a material.
-pub fn stiffness(world: &World, material: Entity) -> Stiffness {
-    let law = ElasticLaw::of(world.entity(material));
-    let [shear, bulk] = law.map_or([0.0; 2], |law| law.small_strain_moduli());
-    let fibres = world.get::<Fibres<f64>>(material).map_or(0.0, |f| f.eta);
-    let families = world.get::<ExponentialFibres>(material);
-    let families: f64 = families.map_or(0.0, |all| all.0.iter().map(|family| family.small_strain_eta()).sum());
+/// What the stable step depends on, of the material of a block: of each copy where it differs, else one.
+pub fn stiffnesses(world: &World, entity: Entity) -> Vec<Stiffness> {
+    let Some(material) = world.get::<Block>(entity).map(|block| block.material) else { return Vec::new() };
+    let density = world.get::<Density>(material).map_or(0.0, |d| d.0);
+    if let Some(PerCopyLaw(copies)) = world.get(entity) {
+        return copies.of_copy.iter().map(|of_copy| stiffness_of(of_copy, density)).collect();
+    }
+    let Some(elastic) = ElasticLaw::of(world.entity(material)) else { return Vec::new() };
+    let exponential = world.get::<ExponentialFibres>(material).map_or(Vec::new(), |all| all.0.clone());
+    let fibres = world.get::<Fibres<f64>>(material).copied();
+    vec![stiffness_of(&LawParameters { elastic, fibres, exponential }, density)]
+}
+
+fn stiffness_of(law: &LawParameters<f64>, density: f64) -> Stiffness {
+    let [shear, bulk] = law.elastic.small_strain_moduli();
+    let families: f64 = law.exponential.iter().map(|family| family.small_strain_eta()).sum();
     Stiffness {
         // a negative λ only softens
         lambda: (bulk - 2.0 / 3.0 * shear).max(0.0),
         shear,
-        eta: fibres + families,
-        density: world.get::<Density>(material).map_or(0.0, |d| d.0),
+        eta: law.fibres.map_or(0.0, |fibres| fibres.eta) + families,
+        density,
     }
 }
 
@@ -155,6 +164,7 @@ pub fn insert_laws(precision: Precision, world: &mut World) {
             prony: terms,
             volumetric,
             reproject: prony.is_some_and(|prony| prony.reproject),
+            copies: world.get::<PerCopyLaw>(entity).map(|PerCopyLaw(copies)| Arc::clone(copies)),
             own_kernels: world.get::<OwnKernels>(block.material).cloned(),
         };
         let memory = law.memory_numbers(point_count(block.kind)) * block.count.div_ceil(LANES) * LANES;

@@ -44,7 +44,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
                 }
                 world.spawn((Fixed { rows, axes }, OfBody(body.entity)));
             }
-            Constraint::Prescribed { displacement, gradient, rotation, center, curve, .. } => {
+            Constraint::Prescribed { displacement, gradient, rotation, center, per_copy, curve, .. } => {
                 if taken > 0 {
                     diagnostics.warn_at(
                         format!("constraints[{number}]").as_str(),
@@ -85,15 +85,23 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
                         )
                         .note("let it take time: curve: Smooth(end: ...), Ramp(end: ...) or Table([...])");
                 }
-                let signal = world.resource_mut::<Signals>().add(Signal::Motion {
-                    curve: curve.clone(),
-                    displacement: *displacement,
-                    gradient: DMat3::from_cols(gradient[0], gradient[1], gradient[2]).transpose(),
-                    rotation: *rotation * std::f64::consts::PI / 180.0,
-                });
-                let arms = world
+                let slopes = DMat3::from_cols(gradient[0], gradient[1], gradient[2]).transpose();
+                let mut arms: Vec<DVec3> = world
                     .get::<RestPosition>(body.entity)
                     .map_or(Vec::new(), |rest| rows.iter().map(|&row| rest.0[row as usize] - *center).collect());
+                let (mut displacement, mut gradient) = (*displacement, slopes);
+                if let Some(per_copy) = per_copy {
+                    // each node's own motion is its arm, of which the curve takes a part
+                    let factors = per_copy.values(&format!("constraints[{number}]"), body.copies);
+                    for (arm, factor) in arms.iter_mut().zip(body.of_rows(&rows, &factors)) {
+                        *arm = factor * (slopes * *arm + displacement);
+                    }
+                    (displacement, gradient) = (DVec3::ZERO, DMat3::IDENTITY);
+                }
+                let rotation = *rotation * std::f64::consts::PI / 180.0;
+                let curve = curve.clone();
+                let signal =
+                    world.resource_mut::<Signals>().add(Signal::Motion { curve, displacement, gradient, rotation });
                 world.spawn((Prescribed { rows, axes, arms, signal }, OfBody(body.entity)));
             }
         }

@@ -1,9 +1,10 @@
 //! Contacts with tools: selections become rows, and what stands in each other's way at the start is told.
 
-use super::body_columns::stiffness;
+use super::body_columns::stiffnesses;
 use super::{Assembly, BodyParts};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
+use crate::elements::Stiffness;
 use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Contact, ContactLaw, Curve, Select, Tool, ToolMesh, ToolPlace};
@@ -205,11 +206,9 @@ pub(super) fn edge(body: &BodyParts) -> f64 {
 /// How fast nodes inside a tool come out (m/s): half an edge in the time that a wave takes through the body.
 pub(super) fn settling(body: &BodyParts, edge: f64, world: &World) -> f64 {
     let (low, high) = bounds(&body.placed.mesh.points);
-    let of_block = |&block: &Entity| {
-        let stiffness = world.get::<Block>(block).map(|block| stiffness(world, block.material));
-        stiffness.map_or(0.0, |of| (of.lambda + 2.0 * of.shear + of.eta) / of.density)
-    };
-    let speed = body.blocks.iter().map(of_block).fold(0.0, f64::max).sqrt();
+    let square = |of: Stiffness| (of.lambda + 2.0 * of.shear + of.eta) / of.density;
+    let materials = body.blocks.iter().flat_map(|&block| stiffnesses(world, block));
+    let speed = materials.map(square).fold(0.0, f64::max).sqrt();
     0.5 * edge * speed / (high - low).length()
 }
 

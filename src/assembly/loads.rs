@@ -14,9 +14,8 @@ use std::sync::Arc;
 pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
     let systems = crate::systems::standard();
     for (number, load) in assembly.scene.scene.loads.iter().enumerate() {
-        let path = format!("loads[{number}].on");
         let LoadParts { word, name, body, on, .. } = load.parts();
-        let Some((bodies, on, share)) = acted_on(assembly, body, on, &path, diagnostics) else { continue };
+        let Some((bodies, on, share)) = acted_on(assembly, body, on, number, diagnostics) else { continue };
         let system = systems.iter().filter_map(|system| system.load.as_ref()).find(|load| load.word == word);
         let (true, Some(system)) = (has_weight(load), system) else { continue };
         let signal = world.resource_mut::<Signals>().add_load(number, load, share);
@@ -33,7 +32,7 @@ fn acted_on(
     assembly: &Assembly<'_>,
     name: Option<&String>,
     on: On<'_>,
-    path: &str,
+    number: usize,
     diagnostics: &mut Diagnostics,
 ) -> Option<(Vec<Entity>, LoadedRows, f64)> {
     let Some(select) = on.select() else {
@@ -41,26 +40,28 @@ fn acted_on(
         let bodies = named.map_or(assembly.bodies.values().collect(), |body| vec![body]);
         return Some((bodies.into_iter().map(|body| body.entity).collect(), LoadedRows::All, 1.0));
     };
+    let path = format!("loads[{number}].on");
     let body = assembly.body(&name.cloned())?;
-    let picked = assembly.pick(body, select, path, diagnostics)?;
+    let picked = assembly.pick(body, select, &path, diagnostics)?;
+    let factors = on.per_copy().map(|per_copy| per_copy.values(&format!("loads[{number}]"), body.copies));
     let found = match on {
-        On::Nodes(_, share, per_copy) => picked.nodes(&body.placed).map(|marks| {
+        On::Nodes(_, share, _) => picked.nodes(&body.placed).map(|marks| {
             let rows = body.rows_of(&marks);
-            let factors = per_copy.map_or(Vec::new(), |ends| body.copy_factors(&rows, ends));
+            let factors = factors.map_or(Vec::new(), |factors| body.of_rows(&rows, &factors));
             let touched: BTreeSet<usize> = body.copies_of(&rows).into_iter().collect();
             let each = rows.len() as f64 / touched.len().max(1) as f64;
             let parts = if share == Share::Total { each } else { 1.0 };
             (LoadedRows::Nodes(Arc::new(LoadedNodes { rows, factors })), parts)
         }),
-        On::Bodies | On::Faces(_) => {
+        On::Bodies | On::Faces(..) => {
             let faces = picked.faces(&body.placed);
-            faces.map(|places| (LoadedRows::Faces(Arc::new(face_corners(body, &places))), 1.0))
+            faces.map(|places| (LoadedRows::Faces(Arc::new(face_corners(body, &places, factors.as_deref()))), 1.0))
         }
     };
     match found {
         Ok((rows, share)) => Some((vec![body.entity], rows, share)),
         Err(problem) => {
-            diagnostics.error_at(path, problem.message).notes(problem.notes);
+            diagnostics.error_at(path.as_str(), problem.message).notes(problem.notes);
             None
         }
     }
@@ -71,9 +72,17 @@ pub(super) fn has_weight(load: &Load) -> bool {
     load.amplitude() != DVec3::ZERO
 }
 
-/// Chosen faces of the surface, by the nodes they load.
-fn face_corners(body: &BodyParts, places: &[usize]) -> FaceCorners {
-    corners_of(body, places.iter().map(|&place| &body.placed.surface()[place])).0
+/// Chosen faces of the surface, by the nodes they load, and how much they count in each copy.
+fn face_corners(body: &BodyParts, places: &[usize], factors: Option<&[f64]>) -> FaceCorners {
+    let mut corners = corners_of(body, places.iter().map(|&place| &body.placed.surface()[place])).0;
+    if let Some(factors) = factors {
+        let rows: Vec<u32> = corners.faces.iter().map(|face| face[0]).collect();
+        for (face, factor) in body.of_rows(&rows, factors).into_iter().enumerate() {
+            corners.weights[face] *= factor;
+            corners.areas[face].iter_mut().for_each(|area| *area *= factor);
+        }
+    }
+    corners
 }
 
 /// Faces by the nodes they load, and for each flat one which of them it is of.

@@ -1,8 +1,10 @@
 //! Materials: entities with a component for every effect.
 
 use super::user_laws;
+use crate::backend::cpu::LawParameters;
 use crate::components::{Damping, Density, ExponentialFibres, Label, Prony, StiffnessDamping};
 use crate::materials::{ElasticLaw, ExponentialFibre, Fibres, each_elastic_law};
+use crate::scene::CopiedMaterial;
 use crate::scene::schema::{self, Material};
 use bevy_ecs::prelude::*;
 use std::collections::BTreeMap;
@@ -51,6 +53,29 @@ pub(super) fn spawn(
         spawned.insert(name.clone(), entity.id());
     }
     spawned
+}
+
+/// Parameters of a body's material in each of its copies, of the effects that it was made with: `made` and `now` are
+/// scenes. `None` where all have the same.
+pub(super) fn parameters_of_copies(
+    made: &schema::Scene,
+    now: &schema::Scene,
+    body: &str,
+    material: &str,
+) -> Option<Vec<LawParameters<f64>>> {
+    let (body, made, now) = (now.bodies.get(body)?, made.materials.get(material)?, now.materials.get(material)?);
+    let copied = CopiedMaterial::of(body, material, now)?;
+    let of_copy = |copy: usize| {
+        let of_copy = copied.of_copy(copy)?;
+        let fibres = made.fibres.as_ref().filter(|fibres| fibres.eta != 0.0);
+        let families = made.exponential_fibres.iter().flatten().zip(of_copy.exponential_fibres.iter().flatten());
+        Some(LawParameters {
+            elastic: of_copy.elastic_law()?,
+            fibres: fibres.and(of_copy.fibres.as_ref()).map(fibres_of),
+            exponential: families.filter(|(made, _)| made.k1 != 0.0).map(|(_, family)| family_of(family)).collect(),
+        })
+    };
+    (0..body.copies as usize).map(of_copy).collect()
 }
 
 /// Takes the parameters that a material has now, of the effects that it was made with.

@@ -1,10 +1,10 @@
 //! What a static analysis needs to know of meshes: fictitious masses, and how many steps a push takes from end to end.
 
 use super::Assembly;
-use super::body_columns::stiffness;
+use super::body_columns::stiffnesses;
 use super::time_step::square_frequency;
 use crate::components::*;
-use crate::elements::{mass_shares, node_count};
+use crate::elements::{Stiffness, mass_shares, node_count};
 use crate::evaluation::rest_volume;
 use crate::math::lane_place;
 use bevy_ecs::prelude::*;
@@ -80,12 +80,9 @@ pub fn load_steps(world: &mut World) -> u64 {
 
 /// The largest ratio √((λ + 2μ)/μ) of the speeds of pressure and shear waves.
 fn slowest_shear(world: &mut World) -> f64 {
-    let materials: Vec<Entity> = world.query::<&Block>().iter(world).map(|block| block.material).collect();
-    let ratio = |&material: &Entity| {
-        let found = stiffness(world, material);
-        ((found.lambda + found.deviatoric()) / (0.5 * found.deviatoric())).sqrt()
-    };
-    materials.iter().map(ratio).fold(1.0, f64::max)
+    let blocks: Vec<Entity> = world.query_filtered::<Entity, With<Block>>().iter(world).collect();
+    let ratio = |found: Stiffness| ((found.lambda + found.deviatoric()) / (0.5 * found.deviatoric())).sqrt();
+    blocks.iter().flat_map(|&block| stiffnesses(world, block)).map(ratio).fold(1.0, f64::max)
 }
 
 /// Carries distances on from corner to corner of each element; whether one became shorter.

@@ -1,7 +1,7 @@
 //! Materials whose parameters are others than those that their blocks were made with.
 
 use super::material;
-use crate::backend::cpu::BlockLaw;
+use crate::backend::cpu::{BlockLaw, LawCopies, PerCopyLaw};
 use crate::components::*;
 use crate::elements::with_element_of;
 use crate::elements::{Element, MOST_NODES};
@@ -10,6 +10,7 @@ use crate::math::lane_place;
 use crate::scene::schema::Scene;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// Gives all blocks the laws that their materials have in a scene, in place of those that they have had since it was
 /// made: `made` is that scene. The host's columns must be up to date. Blocks that have other laws now, with the law
@@ -29,7 +30,19 @@ pub fn renew_materials(made: &Scene, now: &Scene, world: &mut World) -> Vec<(Ent
     world.remove_resource::<super::SquaresAtRest>();
     let mut blocks: Vec<Entity> = world.query_filtered::<Entity, With<Block>>().iter(world).collect();
     blocks.sort();
+    blocks.iter().for_each(|&entity| renew_copies(entity, (made, now), world));
     blocks.into_iter().filter_map(|entity| Some((entity, renew_block(entity, made, world)?))).collect()
+}
+
+/// Takes the parameters that each copy has now, where they differ.
+fn renew_copies(entity: Entity, (made, now): (&Scene, &Scene), world: &mut World) {
+    let (Some(block), Some(PerCopyLaw(before))) = (world.get::<Block>(entity), world.get(entity)) else { return };
+    let (Some(body), Some(material)) = (world.get::<Label>(block.body), world.get::<Label>(block.material)) else {
+        return;
+    };
+    let Some(of_copy) = material::parameters_of_copies(made, now, &body.0, &material.0) else { return };
+    let copies = LawCopies::new(of_copy, Arc::clone(&before.copies));
+    world.entity_mut(entity).insert(PerCopyLaw(Arc::new(copies)));
 }
 
 /// The law before, where it is another now.
@@ -44,14 +57,15 @@ fn renew_block(entity: Entity, made: &Scene, world: &mut World) -> Option<BlockL
     for ((family, _), now) in law.exponential.iter_mut().zip(families.iter().flat_map(|families| &families.0)) {
         *family = *now;
     }
+    law.copies = world.get::<PerCopyLaw>(entity).map(|PerCopyLaw(copies)| Arc::clone(copies));
     if law == before {
         return None;
     }
-    let moduli = law.elastic.small_strain_moduli();
-    if moduli != before.elastic.small_strain_moduli() {
+    let moduli = |law: &BlockLaw<f64>, row: usize| law.elastic_of(row).small_strain_moduli();
+    if (0..block.count).any(|row| moduli(&law, row) != moduli(&before, row)) {
         let body = world.get::<Label>(block.body).map(|label| label.0.clone()).unwrap_or_default();
         let hourglass = made.bodies.get(&body).map_or(0.0, |body| body.hourglass);
-        scale_hourglass(entity, &block, hourglass * super::body::young(moduli), world);
+        scale_hourglass(entity, &block, |row| hourglass * super::body::young(moduli(&law, row)), world);
     }
     let mut entity = world.entity_mut(entity);
     if entity.contains::<BlockLaw<f32>>() {
@@ -62,7 +76,7 @@ fn renew_block(entity: Entity, made: &Scene, world: &mut World) -> Option<BlockL
 }
 
 /// Hourglass control is as stiff as the material: its rows of rest shapes, as they were made at first.
-fn scale_hourglass(entity: Entity, block: &Block, young: f64, world: &mut World) {
+fn scale_hourglass(entity: Entity, block: &Block, young: impl Fn(usize) -> f64, world: &mut World) {
     let (Some(rest), Some(connectivity)) = (world.get::<RestPosition>(block.body), world.get::<Connectivity>(entity))
     else {
         return;
@@ -82,14 +96,14 @@ fn rows_of<E: Element>(
     block: &Block,
     rest: &RestPosition,
     connectivity: &Connectivity,
-    young: f64,
+    young: impl Fn(usize) -> f64,
 ) -> Vec<(usize, f64)> {
     let of_row = |row: usize| {
         let mut points = [DVec3::ZERO; MOST_NODES];
         for (corner, point) in points[..E::NODES].iter_mut().enumerate() {
             *point = rest.0[connectivity[lane_place(row, E::NODES, corner)] as usize];
         }
-        let [shape, twice] = [young, 2.0 * young].map(|young| E::rest_shape(&points[..E::NODES], young));
+        let [shape, twice] = [young(row), 2.0 * young(row)].map(|young| E::rest_shape(&points[..E::NODES], young));
         let stiff = (0..E::ROWS).filter(move |&k| shape[k] != twice[k]);
         stiff.map(move |k| (lane_place(row, E::ROWS, k), shape[k]))
     };

@@ -5,6 +5,7 @@ use crate::backend::cpu::BlockLaw;
 use crate::components::*;
 use crate::evaluation::ElementState;
 use crate::materials::J_FLOOR;
+use crate::math::noise;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Inversion, Start, laws_that_recover};
 use bevy_ecs::prelude::*;
@@ -43,14 +44,6 @@ fn displacement(start: &Start, node: u64, rest: DVec3) -> DVec3 {
     }
 }
 
-/// A number from 0 to 1 for each number (splitmix64; Steele, Lea & Flood 2014).
-fn noise(number: u64) -> f64 {
-    let mut bits = number.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((bits ^ (bits >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-}
-
 /// Elements that start flat or inside out are an error where they stop the run, and worth a warning where they are
 /// removed.
 fn complain(name: &str, body: Entity, world: &World, diagnostics: &mut Diagnostics) {
@@ -66,7 +59,7 @@ fn complain(name: &str, body: Entity, world: &World, diagnostics: &mut Diagnosti
         }
         let mut found: Vec<(u64, f64)> = Vec::new();
         for row in 0..data.count {
-            let state = ElementState::of(data, row, nodes, shape, u, law);
+            let state = ElementState::of(data, row, nodes, shape, u, law.elastic_of(row));
             let least = state.points().iter().map(|p| p.kinematics.true_j).fold(f64::INFINITY, f64::min);
             if least < J_FLOOR || !least.is_finite() {
                 found.push((authoring.element_id(place, row), least));

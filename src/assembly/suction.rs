@@ -1,10 +1,11 @@
 //! Tools that suck: names become mouths, and bodies tell their faces.
 
-use super::body_columns::stiffness;
+use super::body_columns::stiffnesses;
 use super::contacts::{motion, reference};
 use super::loads::corners_of;
 use super::{Assembly, BodyParts};
 use crate::components::*;
+use crate::elements::Stiffness;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema;
 use crate::tools::Shape;
@@ -61,12 +62,10 @@ fn bore(tool: &schema::Tool) -> Option<f64> {
 
 /// Warns of tissue that is drawn into the mouth without end.
 fn soft(body: &BodyParts, (number, suction): (usize, &schema::Suction), world: &World, diagnostics: &mut Diagnostics) {
-    let young = |&block: &Entity| {
-        let of = stiffness(world, world.get::<Block>(block)?.material);
-        Some((of.shear * (3.0 * of.lambda + 2.0 * of.shear) / (of.lambda + of.shear), of.eta))
-    };
+    let young = |of: Stiffness| (of.shear * (3.0 * of.lambda + 2.0 * of.shear) / (of.lambda + of.shear), of.eta);
     // fibres stiffen it
-    let softest = body.blocks.iter().filter_map(young).filter(|of| of.1 == 0.0).map(|of| of.0).reduce(f64::min);
+    let materials = body.blocks.iter().flat_map(|&block| stiffnesses(world, block));
+    let softest = materials.map(young).filter(|of| of.1 == 0.0).map(|of| of.0).reduce(f64::min);
     if let Some(young) = softest.filter(|young| suction.pressure > *young) {
         let message = format!(
             "the suction of {:.3e} Pa is more than Young's modulus of what it sucks, {young:.3e} Pa",

@@ -1,7 +1,8 @@
 //! The stable step, from the element bound, and the elements that set it.
 
-use super::body_columns::stiffness;
+use super::body_columns::stiffnesses;
 use crate::backend::cpu::Cpu;
+use crate::backend::cpu::PerCopyLaw;
 use crate::components::*;
 use crate::elements::with_element_of;
 use crate::elements::{Element, MOST_ROWS};
@@ -87,15 +88,18 @@ fn square_frequency_of<'a>(
     block: &'a Block,
     made: impl Fn(f64) -> f64 + Sync + 'a,
 ) -> Option<impl Fn(usize) -> f64 + Sync + 'a> {
-    let stiffness = stiffness(world, block.material);
+    let stiffnesses = stiffnesses(world, entity);
+    let copies = world.get::<PerCopyLaw>(entity).map(|PerCopyLaw(law)| &law.copies);
     let shape = world.get::<RestShape>(entity)?;
+    let first = *stiffnesses.first()?;
     Some(move |row: usize| {
+        let stiffness = copies.map_or(&first, |copies| &stiffnesses[copies[row] as usize]);
         let mut rest = [0.0; MOST_ROWS];
         with_element_of!(block, E => {
             for k in 0..E::ROWS {
                 rest[k] = made(shape.get(lane_place(row, E::ROWS, k)));
             }
-            E::frequency_bound(&rest, &stiffness)
+            E::frequency_bound(&rest, stiffness)
         })
     })
 }

@@ -4,7 +4,7 @@
 use super::Buffers;
 use super::cpu::BlockLaw;
 use super::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
-use super::law_kernel::{ElasticPart, ExponentialFamily, family_directions, prerequisites};
+use super::law_kernel::{ElasticPart, ExponentialFamily, family_directions, law_of_element, prerequisites, private};
 use super::patch_lists::{BATCH_GROUPS, PLACE_BITS, PackedPatches, PatchLists, patch_batches};
 use super::user_law;
 use crate::components::{
@@ -57,6 +57,7 @@ pub(crate) struct BlockKernels {
     columns: [BufferId; 2],
     parameters: BufferId,
     elastic: Option<BufferId>,
+    law_numbers: Option<BufferId>,
     fibres: Option<BufferId>,
     uniform_direction: Option<BufferId>,
     families: Option<BufferId>,
@@ -74,6 +75,12 @@ pub(crate) fn law_uniforms(law: &BlockLaw<f32>, label: &str) -> [Option<(String,
         ("exponential_fibres", families),
     ];
     parts.map(|(name, bytes)| (!bytes.is_empty()).then(|| (format!("{name} of {label}"), bytes)))
+}
+
+/// The numbers in which elements' laws differ from copy to copy, with the label of their buffer.
+pub(crate) fn law_numbers(law: &BlockLaw<f32>, label: &str) -> Option<(String, Vec<u8>)> {
+    let copies = law.copies.as_ref()?;
+    Some((format!("law_numbers of {label}"), bytemuck::cast_slice(&copies.numbers).to_vec()))
 }
 
 impl BlockKernels {
@@ -107,6 +114,7 @@ impl BlockKernels {
             }
             _ => None,
         };
+        let law_numbers = law_numbers(&law, &label).map(|(label, bytes)| buffers.constants(label, &bytes));
         let varying_directions = (law.varying_families() > 0).then(|| buffers.column(entity, FibreDirection::NAME));
         Self {
             entity,
@@ -116,6 +124,7 @@ impl BlockKernels {
             columns,
             parameters,
             elastic,
+            law_numbers,
             fibres,
             uniform_direction,
             families,
@@ -167,9 +176,11 @@ impl BlockKernels {
             .fragment(shader!("kinematics"))
             .fragment(shader!("point"))
             .fragment(element_shader(self.block.kind));
-        kernel.fragments.extend(elastic.fragment);
+        kernel.fragments.extend(elastic.fragment.map(|fragment| self.own(fragment, "elastic")));
         kernel.fragments.extend(prerequisites(&self.law.elastic));
-        kernel.layouts.extend(elastic.layout.map(|layout| ("elastic".into(), layout)));
+        if self.law_numbers.is_none() {
+            kernel.layouts.extend(elastic.layout.map(|layout| ("elastic".into(), layout)));
+        }
         match &self.law.elastic {
             ElasticLaw::UserLaw(law) => user_law::with_law(kernel, law.parts()),
             _ => kernel,
@@ -193,12 +204,20 @@ impl BlockKernels {
             .bind_uniform::<Block>("block", self.parameters)
     }
 
-    /// Adds the parameters of the elastic law, if it has any.
+    /// Adds the parameters of the elastic law, if it has any, or those in which each element has its own.
     fn with_parameters(&self, kernel: Kernel) -> Kernel {
-        match self.elastic {
-            Some(buffer) => kernel.bind("elastic", buffer),
-            None => kernel,
+        match (self.law_numbers, self.elastic) {
+            (Some(numbers), _) => kernel
+                .fragment(self.generated("law of an element", law_of_element(&self.law)))
+                .bind("law_numbers", numbers),
+            (None, Some(buffer)) => kernel.fragment(shader!("law_of_all")).bind("elastic", buffer),
+            (None, None) => kernel.fragment(shader!("law_of_all")),
         }
+    }
+
+    /// A fragment whose uniform of that name is each element's own where copies differ.
+    fn own(&self, fragment: Fragment, uniform: &str) -> Fragment {
+        if self.law_numbers.is_some() { private(&fragment, uniform) } else { fragment }
     }
 
     /// Adds where the element type's pressure comes from.
@@ -228,7 +247,10 @@ impl BlockKernels {
     fn with_fibres(&self, mut kernel: Kernel) -> Kernel {
         let mut text = String::new();
         if let Some(fibres) = self.fibres {
-            kernel = kernel.fragment(shader!("fibres")).bind_uniform::<Fibres<f32>>("fibres", fibres);
+            kernel = kernel.fragment(self.own(shader!("fibres"), "fibres"));
+            if self.law_numbers.is_none() {
+                kernel = kernel.bind_uniform::<Fibres<f32>>("fibres", fibres);
+            }
             match (self.uniform_direction, &self.law.fibres) {
                 (Some(direction), _) => {
                     kernel = kernel
@@ -244,9 +266,10 @@ impl BlockKernels {
         }
         if let Some(families) = self.families {
             text += &family_directions(&self.law.exponential);
-            kernel = kernel
-                .fragment(shader!("exponential_fibres"))
-                .bind_uniform::<ExponentialFamily>("exponential_fibres", families);
+            kernel = kernel.fragment(self.own(shader!("exponential_fibres"), "exponential_fibres"));
+            if self.law_numbers.is_none() {
+                kernel = kernel.bind_uniform::<ExponentialFamily>("exponential_fibres", families);
+            }
             if !kernel.fragments.contains(&shader!("elementary")) {
                 kernel = kernel.fragment(shader!("elementary"));
             }

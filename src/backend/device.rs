@@ -45,15 +45,15 @@ pub struct Device {
     columns: BTreeMap<Key, DeviceColumn>,
     accesses: Vec<ColumnAccess>,
     written: BTreeMap<KernelId, Vec<Key>>,
-    uniforms: BTreeMap<String, Vec<BufferId>>,
+    labelled: BTreeMap<String, Vec<BufferId>>,
     traffic: Traffic,
 }
 
 impl Device {
     /// Takes a GPU for a run; `accesses` are the kinds of columns there are.
     pub fn new(gpu: Gpu, accesses: Vec<ColumnAccess>) -> Self {
-        let (columns, written, uniforms) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
-        Self { gpu, columns, accesses, written, uniforms, traffic: Traffic::default() }
+        let (columns, written, labelled) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
+        Self { gpu, columns, accesses, written, labelled, traffic: Traffic::default() }
     }
 
     /// What the GPU allows.
@@ -66,12 +66,12 @@ impl Device {
         &mut self.gpu
     }
 
-    /// Writes a uniform anew, wherever kernels have it under that label; nothing where none has.
+    /// Writes a uniform or constants anew, wherever kernels have them under that label; nothing where none has.
     ///
     /// # Errors
     /// What the GPU says.
-    pub fn rewrite_uniform(&mut self, label: &str, bytes: &[u8]) -> Result<(), Error> {
-        for &buffer in self.uniforms.get(label).into_iter().flatten() {
+    pub fn rewrite(&mut self, label: &str, bytes: &[u8]) -> Result<(), Error> {
+        for &buffer in self.labelled.get(label).into_iter().flatten() {
             self.gpu.upload(buffer, 0, bytes)?;
         }
         Ok(())
@@ -292,12 +292,14 @@ impl Buffers for Binder<'_> {
     }
 
     fn constants(&mut self, label: String, bytes: &[u8]) -> BufferId {
-        self.create(&label, bytes, bytes.len(), BufferKind::Storage)
+        let buffer = self.create(&label, bytes, bytes.len(), BufferKind::Storage);
+        self.device.labelled.entry(label).or_default().push(buffer);
+        buffer
     }
 
     fn uniform(&mut self, label: String, bytes: &[u8]) -> BufferId {
         let buffer = self.create(&label, bytes, bytes.len(), BufferKind::Uniform);
-        self.device.uniforms.entry(label).or_default().push(buffer);
+        self.device.labelled.entry(label).or_default().push(buffer);
         buffer
     }
 }

@@ -1,5 +1,6 @@
 //! What a material brings to the kernels of its blocks: WGSL twins of its laws, and their parameters.
 
+use super::cpu::BlockLaw;
 use super::kernel::{Fragment, Layout, Uniform, uniform};
 use crate::components::FamilyDirection;
 use crate::materials::{self, ElasticLaw, ExponentialFibre, Fibres, Law, Prerequisite, PronyTerm, each_elastic_law};
@@ -47,6 +48,62 @@ pub(super) fn family_directions(families: &[(ExponentialFibre<f32>, FamilyDirect
     }
     text += "    let f = exponential_fibres[family];\n    return vec3<f32>(f.x, f.y, f.z);\n}\n";
     text
+}
+
+/// A fragment with a variable of each invocation's own in place of a uniform of that name.
+pub(super) fn private(fragment: &Fragment, name: &str) -> Fragment {
+    let text =
+        fragment.text.replace(&format!("@group(0) @binding(0) var<uniform> {name}:"), &format!("var<private> {name}:"));
+    Fragment::new(fragment.path.clone(), text)
+}
+
+/// WGSL that gives an invocation the law of its element, where the parameters in
+/// [`LawParameters::numbers`](super::cpu::LawParameters::numbers) differ from copy to copy.
+pub(super) fn law_of_element(law: &BlockLaw<f32>) -> String {
+    let rows = law.copies.as_ref().map_or(0, |copies| copies.rows);
+    let families = &law.exponential;
+    let fibres = law.fibres.as_ref().map(|(fibres, _)| fibres);
+    let of_elastic = rows - 2 * families.len() - usize::from(fibres.is_some());
+    let mut text = format!(
+        "@group(0) @binding(0) var<storage, read> law_numbers: array<f32>;\n\
+         fn law_number(element: u32, k: u32) -> f32 {{\n    return law_numbers[place(element, {rows}u, k)];\n}}\n\
+         fn take_law(element: u32) {{\n"
+    );
+    let part = ElasticPart::of(&law.elastic);
+    let mut k = 0;
+    for (name, offset, bytes) in part.layout.iter().flat_map(|layout| layout.members) {
+        match bytes / 4 {
+            1 if k < of_elastic => {
+                text += &format!("    elastic.{name} = law_number(element, {k}u);\n");
+                k += 1;
+            }
+            // what is no parameter is the same in all copies: how many terms there are
+            1 => {
+                let word = part.bytes.get(*offset..offset + 4).and_then(|bytes| bytes.try_into().ok());
+                text += &format!("    elastic.{name} = {}u;\n", word.map_or(0, u32::from_ne_bytes));
+            }
+            numbers => {
+                for i in 0..numbers {
+                    text += &format!("    elastic.{name}[{i}] = law_number(element, {}u);\n", k + i);
+                }
+                k += numbers;
+            }
+        }
+    }
+    if let Some(fibres) = fibres {
+        text += &format!("    fibres = Fibres(law_number(element, {k}u), {:?});\n", fibres.tension_only);
+        k += 1;
+    }
+    for (number, family) in families.iter().enumerate() {
+        let ExponentialFamily { dispersion, tension_only, x, y, z, .. } = ExponentialFamily::new(family);
+        text += &format!(
+            "    exponential_fibres[{number}] = ExponentialFamily(law_number(element, {k}u), law_number(element, {}u), \
+             {dispersion:?}, {tension_only:?}, {x:?}, {y:?}, {z:?}, 0.0);\n",
+            k + 1
+        );
+        k += 2;
+    }
+    text + "}\n"
 }
 
 /// An elastic law's WGSL twin, its parameters, and how they are laid out.

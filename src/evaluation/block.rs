@@ -60,12 +60,13 @@ impl<'a> BlockView<'a> {
 
     /// An element's state.
     pub fn element(&self, row: usize) -> ElementState {
-        ElementState::of(self.block, row, self.connectivity, self.shape, self.displacement, self.law)
+        ElementState::of(self.block, row, self.connectivity, self.shape, self.displacement, self.law.elastic_of(row))
     }
 
     /// First Piola-Kirchhoff stress (Pa) at a point that the next `element_forces` will find.
     pub fn stress(&self, row: usize, state: &ElementState, point: usize) -> Mat3<f64> {
         let (law, k) = (self.law, &state.points()[point].kinematics);
+        let elastic = law.elastic_of(row);
         let (isochoric, instant) = self.instant(row, state, point);
         let mut stress = isochoric;
         let mut pressure = instant;
@@ -81,23 +82,23 @@ impl<'a> BlockView<'a> {
                 pressure -= term.relaxed_component(instant, history(6 * terms * points + number));
             }
             if law.reproject {
-                stress = law.elastic.without_pressure(k, stress);
+                stress = elastic.without_pressure(k, stress);
             }
         }
-        law.elastic.first_stress(&state.points()[point].gradient, k, &stress, pressure)
+        elastic.first_stress(&state.points()[point].gradient, k, &stress, pressure)
     }
 
     /// Isochoric second Piola-Kirchhoff stress and pressure (Pa) at a point before anything has relaxed.
     pub fn instant(&self, row: usize, state: &ElementState, point: usize) -> (Sym3<f64>, f64) {
         let (law, k) = (self.law, &state.points()[point].kinematics);
-        let mut isochoric = law.elastic.isochoric(k);
-        if let Some((fibres, from)) = &law.fibres {
+        let mut isochoric = law.elastic_of(row).isochoric(k);
+        if let Some((fibres, from)) = law.fibres_of(row) {
             isochoric = isochoric.plus(&fibres.isochoric(k, self.direction(row, from)));
         }
-        for (family, from) in &law.exponential {
+        for (family, from) in law.families_of(row) {
             isochoric = isochoric.plus(&family.isochoric(k, self.direction(row, from)));
         }
-        (isochoric, self.pressure(state, k))
+        (isochoric, self.pressure(row, state, k))
     }
 
     /// Nodal forces (N).
@@ -110,7 +111,7 @@ impl<'a> BlockView<'a> {
         let mut mean = [0.0; 6];
         for (number, point) in state.points().iter().enumerate() {
             let first = self.stress(row, state, number);
-            let stress = self.law.elastic.cauchy(&point.gradient, point.kinematics.divisor(), &first);
+            let stress = self.law.elastic_of(row).cauchy(&point.gradient, point.kinematics.divisor(), &first);
             (0..6).for_each(|i| mean[i] += point.share * stress.0[i]);
         }
         mean
@@ -118,11 +119,11 @@ impl<'a> BlockView<'a> {
 
     /// Elastic energy per rest volume (J/m³), as of an instantaneous deformation.
     pub fn energy(&self, row: usize, state: &ElementState) -> f64 {
-        let elastic = &self.law.elastic;
+        let elastic = self.law.elastic_of(row);
         let isochoric = |k: &Kinematics<f64>| {
-            let fibres = self.law.fibres.as_ref();
+            let fibres = self.law.fibres_of(row);
             let fibres = fibres.map_or(0.0, |(fibres, from)| fibres.energy(k, self.direction(row, from)));
-            let families = self.law.exponential.iter();
+            let families = self.law.families_of(row);
             let exponential: f64 = families.map(|(family, from)| family.energy(k, self.direction(row, from))).sum();
             elastic.isochoric_energy(k) + fibres + exponential
         };
@@ -131,10 +132,11 @@ impl<'a> BlockView<'a> {
     }
 
     /// Pressure (Pa), positive when the volume has grown.
-    fn pressure(&self, state: &ElementState, k: &Kinematics<f64>) -> f64 {
+    fn pressure(&self, row: usize, state: &ElementState, k: &Kinematics<f64>) -> f64 {
+        let elastic = self.law.elastic_of(row);
         match state.points().len() {
-            1 if self.nodal_volume_change.is_none() => self.law.elastic.pressure(self.law.elastic.volume_measure(k)),
-            _ => self.mean_over_volume_changes(state, |theta| self.law.elastic.pressure(theta)),
+            1 if self.nodal_volume_change.is_none() => elastic.pressure(elastic.volume_measure(k)),
+            _ => self.mean_over_volume_changes(state, |theta| elastic.pressure(theta)),
         }
     }
 

@@ -1,11 +1,10 @@
 //! One element's state.
 
 use super::lane_place;
-use crate::backend::cpu::BlockLaw;
 use crate::components::*;
 use crate::elements::{Element, MOST_NODES, MOST_POINTS, PointState, largest_eigenvalue};
 use crate::elements::{node_count, point_count, with_element_of};
-use crate::materials::{Elastic, Kinematics};
+use crate::materials::{Elastic, ElasticLaw, Kinematics};
 use crate::math::{Mat3, Sym3};
 use crate::mesh::ElementKind;
 
@@ -44,7 +43,7 @@ impl ElementState {
         connectivity: &[u32],
         shape: &Reals,
         displacement: &Reals,
-        law: &BlockLaw<f64>,
+        elastic: &ElasticLaw<f64>,
     ) -> Self {
         let Block { kind, simple, .. } = *block;
         let mut nodes = [0; MOST_NODES];
@@ -60,7 +59,7 @@ impl ElementState {
             let whole: f64 = states.iter().map(|state| state.volume).sum();
             let at = |state: &PointState<f64>| PointKinematics {
                 gradient: state.gradient,
-                kinematics: law.elastic.kinematics(&state.gradient),
+                kinematics: elastic.kinematics(&state.gradient),
                 share: if E::POINTS == 1 { 1.0 } else { state.volume / whole },
             };
             let mut points = [at(&states[0]); MOST_POINTS];

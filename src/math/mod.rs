@@ -4,6 +4,7 @@
 mod broadcast;
 mod eigen;
 mod elementary;
+mod noise;
 mod polar;
 mod real;
 mod rows;
@@ -17,6 +18,7 @@ pub use simd::SimdScalar;
 pub use tensor::{Mat3, Sym3};
 
 // what the engine, the crates on top and tests see beside: no version keeps their names and types
+pub(crate) use noise::noise;
 pub(crate) use polar::Polar;
 pub(crate) use real::vector_at;
 #[doc(hidden)]

@@ -4,7 +4,7 @@ use crate::backend::cpu::BlockLaw;
 use crate::components::*;
 use crate::elements::node_count;
 use crate::evaluation::rest_volume;
-use crate::materials::Elastic;
+use crate::materials::{Elastic, ElasticLaw};
 use crate::math::lane_place;
 use bevy_ecs::prelude::*;
 
@@ -37,9 +37,14 @@ impl Rounding {
                 Reals::F32(_) => (f64::from(f32::EPSILON), KNOWN_STRAIN),
                 Reals::F64(_) => (f64::EPSILON, 0.0),
             };
-            let [shear, bulk] = law.elastic.small_strain_moduli();
+            let stiffness = |elastic: &ElasticLaw<f64>| {
+                let [shear, bulk] = elastic.small_strain_moduli();
+                bulk + 4.0 / 3.0 * shear
+            };
+            let of_copies = law.copies.iter().flat_map(|copies| &copies.of_copy).map(|of| stiffness(&of.elastic));
+            let stiffest = of_copies.reduce(f64::max).unwrap_or_else(|| stiffness(&law.elastic));
             let volume = (0..block.count).map(|row| rest_volume(block, row, shape)).sum::<f64>();
-            let energy = (bulk + 4.0 / 3.0 * shear) * volume;
+            let energy = stiffest * volume;
             rounding.least += 0.5 * energy * known * known;
             let a_metre = energy * digit / shortest_edge(block, connectivity, rest);
             rounding.of_bodies.push((block.body, a_metre));

@@ -184,6 +184,13 @@ fn sums_of<T: SimdScalar>(world: &World, entity: Entity, displacement: &Displace
         fibre_direction: world.get::<FibreDirection>(entity).map(|f| f.slice()),
         nodal_volume_change: &means,
     };
-    let law = world.get::<BlockLaw<f64>>(entity)?.rounded::<T>();
-    Some(with_element_of!(block, E => run_guard::<E, T>(cpu, &columns, &law, patch_groups(block.kind))))
+    let rounded;
+    let law = match world.get::<BlockLaw<T>>(entity) {
+        Some(law) => law,
+        None => {
+            rounded = world.get::<BlockLaw<f64>>(entity)?.rounded::<T>();
+            &rounded
+        }
+    };
+    Some(with_element_of!(block, E => run_guard::<E, T>(cpu, &columns, law, patch_groups(block.kind))))
 }

@@ -15,6 +15,16 @@ pub fn other_than_parameters(made: &Scene, now: &Scene) -> Option<Path> {
             return Some(place("materials").name(name));
         }
     }
+    for (name, body) in &mut same.bodies {
+        let Some(now) = now.bodies.get(name) else { return Some(place("bodies")) };
+        // what differs from copy to copy stays what does
+        if body.per_copy.keys().eq(now.per_copy.keys()) {
+            body.per_copy.clone_from(&now.per_copy);
+        }
+        if body != now {
+            return Some(place("bodies").name(name));
+        }
+    }
     for (number, (load, now)) in same.loads.iter_mut().zip(&now.loads).enumerate() {
         take_amplitude(load, now);
         if load != now {

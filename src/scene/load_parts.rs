@@ -1,6 +1,6 @@
 //! What the rest of the program knows of the loads of scenes, whatever their kind.
 
-use super::schema::{Curve, Select, Share};
+use super::schema::{Curve, PerCopy, Select, Share};
 use glam::DVec3;
 use std::ops::RangeInclusive;
 
@@ -39,10 +39,10 @@ pub struct Usual {
 pub enum On<'a> {
     /// The whole body, or all bodies where it names none, rigid ones too: the amplitude is an acceleration of all mass.
     Bodies,
-    /// Nodes; how it is shared among them, and its factors on the first and the last of the body's copies.
-    Nodes(&'a Select, Share, Option<(f64, f64)>),
-    /// Faces of the surface.
-    Faces(&'a Select),
+    /// Nodes; how it is shared among them, and its factors on the body's copies.
+    Nodes(&'a Select, Share, Option<&'a PerCopy>),
+    /// Faces of the surface, and the factors.
+    Faces(&'a Select, Option<&'a PerCopy>),
 }
 
 impl<'a> On<'a> {
@@ -50,7 +50,15 @@ impl<'a> On<'a> {
     pub fn select(self) -> Option<&'a Select> {
         match self {
             Self::Bodies => None,
-            Self::Nodes(on, ..) | Self::Faces(on) => Some(on),
+            Self::Nodes(on, ..) | Self::Faces(on, _) => Some(on),
+        }
+    }
+
+    /// Its factors on the body's copies, where they differ.
+    pub fn per_copy(self) -> Option<&'a PerCopy> {
+        match self {
+            Self::Bodies => None,
+            Self::Nodes(.., per_copy) | Self::Faces(_, per_copy) => per_copy,
         }
     }
 }

@@ -3,6 +3,7 @@
 mod adjust;
 #[doc(hidden)]
 pub mod check;
+pub(crate) mod copied_material;
 #[doc(hidden)]
 pub mod diagnostic;
 mod excerpt;
@@ -31,6 +32,7 @@ pub mod validate;
 pub mod words;
 
 pub(crate) use adjust::other_than_parameters;
+pub(crate) use copied_material::CopiedMaterial;
 pub use diagnostic::{Diagnostic, Diagnostics, Placed, Severity, TextFile};
 pub use file_access::FileSource;
 pub use limits::Allowed;

@@ -7,7 +7,7 @@ use super::Simulation;
 use super::step_change::add_to_memory_by;
 use super::stiffness::{StabilitySample, StiffnessTracker};
 use crate::assembly::renew_materials;
-use crate::backend::block_kernel::law_uniforms;
+use crate::backend::block_kernel::{law_numbers, law_uniforms};
 use crate::backend::cpu::BlockLaw;
 use crate::backend::device::{Device, bring_to_host, send_to_device};
 use crate::components::*;
@@ -24,9 +24,9 @@ const WRITTEN: [&str; 2] = [RestShape::NAME, ViscousMemory::NAME];
 impl Simulation {
     /// Changes parameters from the next step on, by their places in the scene and in the words of `--set`:
     /// `"materials.liver.neo_hookean=Young(young: 5e3, poisson: 0.45)"`, `"loads[0].acceleration=(0, 0, -3.7)"`. They
-    /// are those of elastic laws, `fibres` and `exponential_fibres` (not their directions), and what loads are: all in
-    /// the scene's units. All of it is read and checked as the scene was, and the stable step is found anew where
-    /// materials change, for some tens of steps' time.
+    /// are those of elastic laws, `fibres` and `exponential_fibres` (not their directions), `per_copy` of bodies, and
+    /// what loads are: all in the scene's units. All of it is read and checked as the scene was, and the stable step is
+    /// found anew where materials change, for some tens of steps' time.
     ///
     /// Snapshots hold what was changed, and going back takes it back. Nodes stay where they are: a load that changes
     /// acts in full from the next step on, and what elements hold more or less afterwards counts as if they had begun
@@ -46,7 +46,9 @@ impl Simulation {
             return Ok(());
         }
         self.keep_start();
-        if changed.scene.materials != self.scene.materials {
+        let per_copy = |scene: &Scene| scene.bodies.values().map(|body| body.per_copy.clone()).collect::<Vec<_>>();
+        let differs = per_copy(&changed.scene) != per_copy(&self.scene);
+        if differs || changed.scene.materials != self.scene.materials {
             self.change_materials(&changed.scene)?;
         }
         if changed.scene.loads != self.scene.loads {
@@ -129,10 +131,10 @@ impl Simulation {
         for (entity, _) in &changed {
             let entity = self.world.entity(*entity);
             let (Some(law), Some(label)) = (entity.get::<BlockLaw<f32>>(), entity.get::<Label>()) else { continue };
-            let uniforms = law_uniforms(law, &label.0);
+            let uniforms = law_uniforms(law, &label.0).into_iter().flatten().chain(law_numbers(law, &label.0));
             if let Some(mut device) = self.world.get_resource_mut::<Device>() {
-                for (label, bytes) in uniforms.into_iter().flatten() {
-                    device.rewrite_uniform(&label, &bytes)?;
+                for (label, bytes) in uniforms {
+                    device.rewrite(&label, &bytes)?;
                 }
             }
         }

@@ -306,7 +306,7 @@ impl Simulation {
         grabs.held = held;
         let bytes = grab_bytes(&grabs);
         if let Some(mut device) = self.world.get_resource_mut::<Device>() {
-            device.rewrite_uniform(&grab_uniform(&label), &bytes)?;
+            device.rewrite(&grab_uniform(&label), &bytes)?;
         }
         Ok(())
     }

@@ -138,7 +138,7 @@ fn take_coefficients(
     let rounded = law.rounded::<f32>();
     let bytes: Vec<u8> = rounded.prony.iter().chain(&rounded.volumetric).flat_map(Uniform::bytes).collect();
     if let Some(mut device) = world.get_resource_mut::<Device>() {
-        device.rewrite_uniform(&format!("prony of {label}"), &bytes)?;
+        device.rewrite(&format!("prony of {label}"), &bytes)?;
     }
     let mut entity = world.entity_mut(entity);
     if entity.contains::<BlockLaw<f32>>() {

@@ -14,10 +14,11 @@
 //! Exponential fibres stiffen by so much more that what
 //! they add is computed along their own directions.
 
-use crate::backend::cpu::{BlockLaw, sizes, with_identity};
+use crate::backend::cpu::{BlockLaw, LawParameters, sizes, with_identity};
 use crate::components::FamilyDirection;
 use crate::materials::{Elastic, ExponentialFibre};
 use crate::math::Mat3;
+use std::collections::BTreeSet;
 
 /// Stretches that laws are tried at: each so many times the one before.
 const STRETCH_RATIO: f64 = 1.106;
@@ -33,10 +34,9 @@ const MULTIPLICATIONS: usize = 40;
 /// Stiffness ratio of ω² of a law, by how far it is deformed.
 #[derive(Clone, Debug)]
 pub(super) struct StiffnessRatio {
-    /// The law without its exponential fibres.
-    law: BlockLaw<f64>,
-    /// What [`tangents`] gives at rest (Pa).
-    rest: [f64; 4],
+    /// The law without its exponential fibres, and what [`tangents`] gives of it at rest (Pa): of a body whose copies
+    /// differ, those of its [`extremes`].
+    laws: Vec<(BlockLaw<f64>, [f64; 4])>,
     /// Whether the law ends at J = 0: see [`StrainColumns`](crate::backend::cpu::StrainColumns).
     pub ends: bool,
     /// How many of the stretches it was tried at; what was not is not needed yet.
@@ -54,13 +54,17 @@ pub(super) struct StiffnessRatio {
 impl StiffnessRatio {
     /// Of a law.
     pub fn of(law: &BlockLaw<f64>) -> Self {
-        let rest = tangents(law, &[1.0; 3]);
         let varying = law.varying_families();
-        let mut law = law.clone();
-        let families = std::mem::take(&mut law.exponential);
-        let alone = law.fibres.is_none() && families.is_empty() && law.prony.is_empty();
+        let alone = law.fibres.is_none() && law.exponential.is_empty() && law.prony.is_empty();
         let ends = !alone || law.elastic.ends_at_no_volume();
-        let mut new = Self { law, rest, ends, tried: 0, own: Table::new(), waves: Table::new(), families, varying };
+        let families = stiffest_families(law);
+        let at_rest = |mut law: BlockLaw<f64>| {
+            let rest = tangents(&law, &[1.0; 3]);
+            law.exponential.clear();
+            (law, rest)
+        };
+        let laws = extremes(law).into_iter().map(at_rest).collect();
+        let mut new = Self { laws, ends, tried: 0, own: Table::new(), waves: Table::new(), families, varying };
         // what is pressed flat or through itself is no limit there
         for stretch in FLAT.into_iter().filter(|_| !ends) {
             for stretches in [[stretch, 1.0, 1.0], [1.0, stretch, 1.0]] {
@@ -105,14 +109,19 @@ impl StiffnessRatio {
 
     /// Size of a sample, and the ratio of an element alone and of plane waves.
     fn tried_at(&self, stretches: [f64; 3]) -> [f64; 3] {
-        let found = tangents(&self.law, &stretches);
-        let ratio = |i: usize| if self.rest[i] > 0.0 { found[i] / self.rest[i] } else { 1.0 };
         let mut gradient = Mat3::zero(0.0);
         (0..3).for_each(|i| gradient.0[i][i] = stretches[i] - 1.0);
         let [first, inverse, _] = sizes(&with_identity(&gradient), self.ends);
         // max forgets what is no number
-        let own = (0..3).map(ratio).fold(0.0, |most: f64, ratio| if ratio.is_nan() { ratio } else { most.max(ratio) });
-        [first.max(inverse), own, ratio(3)]
+        let larger = |most: f64, ratio: f64| if ratio.is_nan() || most.is_nan() { f64::NAN } else { most.max(ratio) };
+        let [mut own, mut waves] = [0.0; 2];
+        for (law, rest) in &self.laws {
+            let found = tangents(law, &stretches);
+            let ratio = |i: usize| if rest[i] > 0.0 { found[i] / rest[i] } else { 1.0 };
+            own = (0..3).map(ratio).fold(own, larger);
+            waves = larger(waves, ratio(3));
+        }
+        [first.max(inverse), own, waves]
     }
 
     /// Stiffness ratio of an element's own ω² at most without exponential fibres, for a size within
@@ -142,8 +151,50 @@ impl StiffnessRatio {
         let exponent = (family.k2 * strain * strain).min(40.0);
         let tangent = family.k1 * exponent.exp() * (4.0 * (1.0 + 2.0 * exponent) * measure + 2.0 * strain);
         // at rest it is part of what the ratio is measured by
-        ((tangent - 4.0 * family.k1) / self.rest[0]).max(0.0)
+        let softest = self.laws.iter().map(|(_, rest)| rest[0]).fold(f64::INFINITY, f64::min);
+        ((tangent - 4.0 * family.k1) / softest).max(0.0)
     }
+}
+
+/// Laws of which one is taken to stiffen most, of all copies: those in which a number, by itself or over the shear
+/// modulus at small strains, is the least or the largest. Without copies the law itself.
+fn extremes(law: &BlockLaw<f64>) -> Vec<BlockLaw<f64>> {
+    let Some(copies) = &law.copies else { return vec![law.clone()] };
+    let numbers = |copy: usize| {
+        let of_copy = &copies.of_copy[copy];
+        let shear = of_copy.elastic.small_strain_moduli()[0];
+        of_copy.numbers().into_iter().flat_map(|number| [number, number / shear]).collect::<Vec<f64>>()
+    };
+    let of_each: Vec<Vec<f64>> = (0..copies.of_copy.len()).map(numbers).collect();
+    let mut chosen = BTreeSet::new();
+    for k in 0..of_each.first().map_or(0, Vec::len) {
+        let by = |a: &usize, b: &usize| of_each[*a][k].total_cmp(&of_each[*b][k]);
+        chosen.extend((0..of_each.len()).min_by(by));
+        chosen.extend((0..of_each.len()).max_by(by));
+    }
+    let of_copy = |copy: usize| {
+        let LawParameters { elastic, fibres, exponential } = copies.of_copy[copy].clone();
+        let directions = law.exponential.iter().map(|(_, from)| *from);
+        BlockLaw {
+            elastic,
+            fibres: fibres.zip(law.fibres.as_ref().map(|(_, from)| *from)),
+            exponential: exponential.into_iter().zip(directions).collect(),
+            copies: None,
+            ..law.clone()
+        }
+    };
+    chosen.into_iter().map(of_copy).collect()
+}
+
+/// The families of exponential fibres, each with the largest k₁ and k₂ of all copies.
+fn stiffest_families(law: &BlockLaw<f64>) -> Vec<(ExponentialFibre<f64>, FamilyDirection<f64>)> {
+    let mut families = law.exponential.clone();
+    for of_copy in law.copies.iter().flat_map(|copies| &copies.of_copy) {
+        for ((family, _), of_copy) in families.iter_mut().zip(&of_copy.exponential) {
+            (family.k1, family.k2) = (family.k1.max(of_copy.k1), family.k2.max(of_copy.k2));
+        }
+    }
+    families
 }
 
 /// Stiffness ratio by how far something is deformed, as straight pieces that never fall.

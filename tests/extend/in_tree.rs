@@ -27,6 +27,7 @@ const ABOUT: &[(&str, &str, &[&str])] = &[
         "what cells of files may become, and what has no hourglass modes",
         &["Tet4", "Tet4NodalPressure", "Hex8", "Hex8MeanDilatation"],
     ),
+    ("src/scene/schema/per_copy.rs", "numbers that go evenly from one to another", &["Linear"]),
     ("src/observation/guards.rs", "what to take where hourglass modes grow", &["Hex8MeanDilatation"]),
     ("src/elements/tet4_nodal_pressure.rs", "made of the other element", &["Tet4"]),
     ("src/elements/hex8_mean_dilatation.rs", "made of the other element", &["Hex8", "hex8"]),

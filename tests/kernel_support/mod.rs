@@ -28,6 +28,7 @@ pub const SUPPORT: &[(&str, &str)] = &[
     ("fibres", "an effect of a material"),
     ("prony", "an effect of a material"),
     ("invariants", "stresses of an energy's slopes, in laws"),
+    ("law_of_all", "elements of one law, where others differ from copy to copy"),
     ("energy", "elastic energy, where elements can go"),
     ("force_factor", "forces that differ from copy to copy"),
     ("external_force", "sums of loads, between kernels"),

@@ -11,7 +11,10 @@ use sinew::systems::{OnDevice, Registry};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
 use std::sync::Arc;
 
+mod laws;
 mod noise;
+#[allow(unused_imports)]
+pub use laws::{ALONG, AROUND, FAMILIES, GROWING, LAWS, VARIED};
 #[allow(unused_imports)]
 pub use noise::{Noise, randomize, scale_strains, small_strains};
 
@@ -30,6 +33,8 @@ pub struct Effects {
     pub moved: bool,
     /// Two copies of each body, with loads that differ.
     pub copies: bool,
+    /// Parameters of the law, and of fibres where there are, that differ from copy to copy: see [`VARIED`].
+    pub varied: Option<&'static str>,
     pub compensated: bool,
     pub energies: bool,
     pub removal: bool,
@@ -57,29 +62,6 @@ pub struct Effects {
     /// How element forces are summed.
     pub scheme: Scheme,
 }
-
-pub const LAWS: [&str; 10] = [
-    "linear: Moduli(shear: 1034, bulk: 10000)",
-    "st_venant_kirchhoff: Moduli(shear: 1034, bulk: 10000)",
-    "neo_hookean: Moduli(shear: 1034, bulk: 10000)",
-    "stable_neo_hookean: Moduli(shear: 1034, bulk: 10000)",
-    "mooney_rivlin: (c10: 300, c01: 200, bulk: 10000)",
-    "ogden: (terms: [(mu: 1400, alpha: 1.3), (mu: 3, alpha: 5), (mu: -30, alpha: -2)], bulk: 10000)",
-    "arruda_boyce: (shear: 700, locking_stretch: 1.8, bulk: 10000)",
-    "law: (energy: \"c1*I1bar_minus_3 + c2*I2bar_minus_3 + c/2*(exp(b*I1bar_minus_3^2) - 1) + kappa/4*(J^2 - 1 - 2*log(J))\", parameters: {\"c1\": 300, \"c2\": 150, \"c\": 20, \"b\": 0.4, \"kappa\": 10000})",
-    GROWING,
-    "corotational: Moduli(shear: 1034, bulk: 10000)",
-];
-
-/// An energy whose terms of first order cancel as it is written.
-pub const GROWING: &str = "law: (energy: \"mu/2*I1bar_minus_3 + kappa/b^2*(exp(b*J_minus_1) - b*J_minus_1)\", parameters: {\"mu\": 1034, \"b\": 3, \"kappa\": 10000})";
-
-/// One family along a line, and one around an axis that pushes, too.
-pub const FAMILIES: &str = "[(k1: 900, k2: 0.4, dispersion: 0.1, direction: Along(1, 2, 3)),
-    (k1: 700, k2: 0.3, direction: Around(axis: (0.3, 0.2, 1)), tension_only: false)]";
-
-pub const ALONG: &str = "Along(1, 2, 3)";
-pub const AROUND: &str = "Around(center: (0.1, 0.2, -0.3), axis: (0.3, 0.2, 1))";
 
 impl Effects {
     /// Everything at once.
@@ -140,6 +122,13 @@ impl Effects {
         }
         all.push(Self::all());
         all.push(Self { copies: true, loads: true, ..Self::default() });
+        for (law, varied) in VARIED {
+            let own = Self { copies: true, law: Some(law), varied: Some(varied), ..Self::default() };
+            all.push(Self { averaged: law == LAWS[2], ..own.clone() });
+            let families = (law != LAWS[0]).then_some(FAMILIES);
+            let fibres = (law != LAWS[0]).then_some(AROUND);
+            all.push(Self { families, fibres, removal: true, prony: 1, scheme: Scheme::TwoPass, ..own });
+        }
         all.push(Self { averaged: true, ..Self::default() });
         all.push(Self { grabs: true, ..Self::default() });
         all.push(Self { averaged: true, ..Self::all() });
@@ -172,9 +161,18 @@ impl Effects {
         let damping = if self.damping { "damping: 20," } else { "" };
         let inversion = self.inversion.map_or(String::new(), |word| format!("inversion: {word},"));
         let (copies, per_copy) = match self.copies {
-            true => ("copies: 2, apart: (0.001, 0, 0),", "per_copy: (0.5, -2),"),
+            true => ("copies: 2, apart: (0.001, 0, 0),", "per_copy: Linear(0.5, -2),"),
             false => ("", ""),
         };
+        let mut varied: Vec<&str> = self.varied.into_iter().collect();
+        if self.varied.is_some() && self.fibres.is_some() {
+            varied.push("\"tissue.fibres.eta\": Values([1000, 3000])");
+        }
+        if self.varied.is_some() && self.families.is_some() {
+            varied.push("\"tissue.exponential_fibres[0].k1\": Values([900, 500])");
+            varied.push("\"tissue.exponential_fibres[1].k2\": Values([0.1, 0.4])");
+        }
+        let varied = varied.join(", ");
         let both = |text: &str| {
             ["tets", "hexes"].map(|body| text.replace("BODY", body).replace("PER_COPY", per_copy)).concat()
         };
@@ -227,7 +225,7 @@ impl Effects {
                 false => format!("Ellipsoid(radii: (0.05, 0.04, 0.06), across: 6, elements: {kind})"),
             };
             format!(
-                "(mesh: {mesh}, material: \"tissue\", {copies}
+                "(mesh: {mesh}, material: \"tissue\", {copies} per_copy: {{{varied}}},
                   regions: [(on: Box(min: (0, -1, -1), max: (1, 1, 1)), material: \"plain\")])"
             )
         };

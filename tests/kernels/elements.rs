@@ -1,6 +1,6 @@
 //! `element_forces`.
 
-use super::kernel_worlds::{ALONG, AROUND, Effects, FAMILIES, GROWING, LAWS, scale_strains, small_strains};
+use super::kernel_worlds::{ALONG, AROUND, Effects, FAMILIES, GROWING, LAWS, VARIED, scale_strains, small_strains};
 use super::magnitude::{OGDEN_ROUNDINGS, ROUNDINGS, magnitude};
 use super::pair::{Pair, UNIT, entities, run};
 use bevy_ecs::prelude::*;
@@ -218,6 +218,22 @@ fn laws_of_the_ladder_exert_the_same_forces() {
     }
 }
 
+/// Parameters that differ from copy to copy, with every built-in law: alone, and with all that a material can have.
+#[test]
+fn copies_of_differing_laws_exert_the_same_forces() {
+    for (number, (law, varied)) in VARIED.into_iter().enumerate() {
+        let averaged = number % 2 == 1;
+        let own = Effects { copies: true, law: Some(law), varied: Some(varied), averaged, ..Effects::default() };
+        compare_element_forces(&own, |_| {});
+        let fibrous = !law.starts_with("linear");
+        let (fibres, families) = (fibrous.then_some(ALONG), fibrous.then_some(FAMILIES));
+        compare_element_forces(
+            &Effects { fibres, families, volumetric: true, prony: 2, averaged: false, ..own },
+            |_| {},
+        );
+    }
+}
+
 /// Strains of 1e-4, at which an energy is 1e-8 of the numbers in its formula.
 #[test]
 fn laws_from_an_energy_exert_the_same_forces_at_small_strains() {
@@ -245,7 +261,7 @@ fn volume_ratio(world: &World, block: Entity, row: usize) -> f64 {
     let data = world.get::<Block>(block).unwrap();
     let (shape, u) = (world.get::<RestShape>(block).unwrap(), world.get::<Displacement>(data.body).unwrap());
     let law = world.get::<sinew::backend::cpu::BlockLaw<f64>>(block).unwrap();
-    let state = ElementState::of(data, row, world.get::<Connectivity>(block).unwrap(), shape, u, law);
+    let state = ElementState::of(data, row, world.get::<Connectivity>(block).unwrap(), shape, u, law.elastic_of(row));
     state.points().iter().map(|point| point.kinematics.true_j).fold(f64::INFINITY, f64::min)
 }
 

@@ -22,7 +22,8 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
     let shape = world.get::<RestShape>(block).unwrap();
     let displacement = world.get::<Displacement>(data.body).unwrap();
     let law = world.get::<sinew::backend::cpu::BlockLaw<f64>>(block).unwrap();
-    let state = ElementState::of(data, row, world.get::<Connectivity>(block).unwrap(), shape, displacement, law);
+    let elastic = law.elastic_of(row);
+    let state = ElementState::of(data, row, world.get::<Connectivity>(block).unwrap(), shape, displacement, elastic);
     let entries = state.points().iter().flat_map(|point| point.gradient.0).flatten();
     let h = entries.map(|x| x.abs()).fold(0.0, f64::max);
     let number = |k: usize| shape.get(lane_place(row, row_count(data), k));
@@ -43,10 +44,10 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
     let spread = state.displacements[..nodes].iter().flatten().map(|x| x.abs()).fold(0.0, f64::max);
     // terms of h itself cancel: a gradient is a sum of seven products at most
     let h = h.max(spread * gradients);
-    let eta = law.fibres.as_ref().map_or(0.0, |(fibres, _)| fibres.eta);
-    let [shear, bulk] = law.elastic.small_strain_moduli();
+    let eta = law.fibres_of(row).map_or(0.0, |(fibres, _)| fibres.eta);
+    let [shear, bulk] = elastic.small_strain_moduli();
     // a family's stress grows by exp(k₂Ē²), and its rounding by 2k₂Ē² times that
-    let families = law.exponential.iter().map(|(family, _)| {
+    let families = law.families_of(row).map(|(family, _)| {
         let strain = 2.0 * h * (1.0 + h);
         let exponent = family.k2 * strain * strain;
         4.0 * family.k1 * exponent.exp() * (1.0 + 2.0 * exponent)

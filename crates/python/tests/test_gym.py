@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ import sinew
 gymnasium = pytest.importorskip("gymnasium")
 
 from gymnasium.utils.env_checker import check_env  # noqa: E402
-from sinew.gym import TissueEnv  # noqa: E402
+from sinew.gym import TissueEnv, TissueVectorEnv  # noqa: E402
 
 from conftest import BLOCK, PULL  # noqa: E402
 
@@ -82,3 +83,48 @@ def test_names_that_are_not_there() -> None:
         environment(actions=["pull"])
     with pytest.raises(ValueError, match="block.positions"):
         environment(observe=["tip"])
+
+
+def same(one: object, other: object) -> bool:
+    """Whether what two vectors of environments returned is the same to the last bit."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(same(one[key], other[key]) for key in one)
+    return bool(np.array_equal(one, other))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("workers", [1, 3])
+def test_environments_side_by_side_are_those_of_gymnasium(workers: int) -> None:
+    words: dict[str, Any] = {"actions": {"grip": (-2.0, 2.0)}, "observe": ["top"], "reward": height, "backend": "cpu"}
+    soft = sinew.Scene.from_text(BLOCK)
+    stiff = sinew.Scene.from_text(BLOCK, set={"materials.tissue.density": 2000.0})
+    scenes = [soft, stiff, soft]
+    ours = TissueVectorEnv(scenes, workers=workers, **words)
+    theirs = gymnasium.vector.SyncVectorEnv([lambda scene=scene: TissueEnv(scene, **words) for scene in scenes])
+    assert ours.action_space == theirs.action_space and ours.observation_space == theirs.observation_space
+    assert ours.metadata["autoreset_mode"] == theirs.metadata["autoreset_mode"]
+    assert all(map(same, ours.reset(seed=5), theirs.reset(seed=5)))
+    draws = np.random.default_rng(2)
+    ended = 0
+    # 0.1 s are 6 frames: the seventh begins anew
+    for _ in range(9):
+        actions = draws.uniform(-2, 2, (3, 1)).astype(np.float32)
+        found, wanted = ours.step(actions), theirs.step(actions)
+        assert all(map(same, found, wanted))
+        ended += int(found[3].sum())
+    assert ended == 3 and (found[0][0] != found[0][1]).any()
+    with pytest.raises(ValueError, match="2 actions for 3 environments"):
+        ours.step(actions[:2])
+    ours.close()
+
+
+def test_a_vector_of_one_scene() -> None:
+    words: dict[str, Any] = {"actions": ["grip"], "observe": ["block.displacements"], "reward": height, "backend": "cpu"}
+    scene = sinew.Scene.from_text(BLOCK)
+    env = TissueVectorEnv(scene, 2, **words)
+    seen, _ = env.reset(seed=1)
+    assert env.observation_space.contains(seen) and seen.shape == (2, 3 * 64)
+    seen, rewards, *_ = env.step(np.array([[1], [-1]], np.float32))
+    assert env.observation_space.contains(seen) and rewards[0] == pytest.approx(-rewards[1], rel=0.1) and rewards[0] > 0
+    env.close()
+    with pytest.raises(ValueError, match="one scene and a count"):
+        TissueVectorEnv(scene, **words)

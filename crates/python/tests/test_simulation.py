@@ -217,7 +217,7 @@ def test_the_interpreter_is_released(cube: sinew.Scene) -> None:
 def test_copies_are_parted() -> None:
     scene = sinew.Scene.from_text(
         BLOCK.replace('material: "tissue")', 'material: "tissue", copies: 5)').replace(
-            "share: Total", "share: Total, per_copy: (-1, 1)"
+            "share: Total", "share: Total, per_copy: Linear(-1, 1)"
         )
     )
     simulation = sinew.Simulation(scene, backend="cpu")
@@ -233,3 +233,20 @@ def test_copies_are_parted() -> None:
     assert body.by_copy(body.fields()["stress"]).shape == (5, 27, 6)
     with pytest.raises(ValueError, match="cannot be parted into 5 copies"):
         body.by_copy(moved[:4, 0])
+
+
+def test_arrays_are_numbers_a_copy() -> None:
+    stiffness = np.array([1e3, 4e3])
+    scene = sinew.Scene.from_text(
+        BLOCK.replace('material: "tissue")', 'material: "tissue", copies: 2)'),
+        {"bodies.block.per_copy": f'{{"tissue.neo_hookean.young": {sinew.per_copy(stiffness)}}}'},
+    )
+    simulation = sinew.Simulation(scene, backend="cpu")
+    simulation.inputs["grip"] = 0.1
+    simulation.advance_to(0.05)
+    body = simulation.body("block")
+    soft, stiff = body.by_copy(body.displacements())[:, :, 0].mean(axis=1)
+    assert soft > stiff > 0
+    for wrong in (stiffness[None], [1.0, float("nan")]):
+        with pytest.raises(ValueError, match="one finite number a copy"):
+            sinew.per_copy(wrong)

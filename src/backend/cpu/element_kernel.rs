@@ -134,7 +134,7 @@ const fn is_specialised<E: Element>() -> bool {
 /// `None`: it is the one that asks for each effect, as always on machines without vector registers.
 pub fn kernel_effects<E: Element>(cpu: &Cpu, law: &BlockLaw<f32>) -> Option<[bool; 2]> {
     let effects = [law.fibres.is_some(), !law.prony.is_empty()];
-    let others = !law.exponential.is_empty() || !law.volumetric.is_empty() || law.reproject;
+    let others = !law.exponential.is_empty() || !law.volumetric.is_empty() || law.reproject || law.copies.is_some();
     let is_there = match law.elastic {
         ElasticLaw::NeoHookean(_) => true,
         ElasticLaw::StableNeoHookean(_)
@@ -211,7 +211,7 @@ impl<E: Element, T: SimdScalar> BlockRun<'_, '_, E, T> {
         let mut interior = interior.iter_mut();
         let tasks = tasks.enumerate().map(move |(index, (force, patch_local))| {
             let patch = PatchForces::<E, T, L, EFFECTS> {
-                index,
+                first_group: index * groups_a_patch,
                 displacement: columns.displacement,
                 first_row: columns.first_row,
                 nodal_volume_change: columns.nodal_volume_change,
@@ -238,7 +238,7 @@ impl<E: Element, T: SimdScalar> BlockRun<'_, '_, E, T> {
             (patch, interior.next())
         });
         cpu.for_each(tasks, |(patch, interior)| {
-            let index = patch.index;
+            let index = patch.first_group / groups_a_patch;
             let run = |patch: PatchForces<'_, E, T, L, EFFECTS>, interior: Option<&mut NodeColumns<'_, T>>| {
                 T::with_scratch(|scratch| E::run_patch(cpu, OfPatch { patch, interior, scratch }))
             };
@@ -263,7 +263,8 @@ impl<E: Element, T: SimdScalar> BlockRun<'_, '_, E, T> {
 }
 
 struct PatchForces<'a, E, T: SimdScalar, L, const EFFECTS: u8> {
-    index: usize,
+    /// Its first group, among those of the block.
+    first_group: usize,
     displacement: &'a [T],
     first_row: usize,
     nodal_volume_change: &'a [T],
@@ -314,6 +315,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd
             }
             let mut at = 0;
             while at < LANES {
+                patch.take_parameters(simd, group, at, &mut law);
                 worst = worst.max(patch.part_of_group(simd, &law, group, at, scratch));
                 at += T::width::<S>();
             }

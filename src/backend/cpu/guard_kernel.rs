@@ -120,10 +120,13 @@ impl<E: Element, T: SimdScalar> PatchSums<'_, E, T> {
         at: usize,
         corners: &[[T::Vector<S>; 3]; crate::elements::MOST_NODES],
     ) -> Register<T::Vector<S>> {
-        let elastic = self.law.elastic.map(
-            #[inline(always)]
-            |number: T| T::splat(simd, number),
-        );
+        let elastic = match &self.law.copies {
+            Some(copies) => copies.elastic(simd, &self.law.elastic, group, at),
+            None => self.law.elastic.map(
+                #[inline(always)]
+                |number: T| T::splat(simd, number),
+            ),
+        };
         let rest_shape = &self.columns.rest_shape[group * E::ROWS * LANES..(group + 1) * E::ROWS * LANES];
         let number = |row: usize| T::load(simd, &rest_shape[row * LANES + at..]);
         let u = E::prepare(corners);
@@ -182,11 +185,20 @@ impl<E: Element, T: SimdScalar> PatchSums<'_, E, T> {
     fn fibre_energy<S: Simd>(&self, simd: S, group: usize, at: usize, k: &Kinematics<T::Vector<S>>) -> T::Vector<S> {
         let splat = |number: T| T::splat(simd, number);
         let mut energy = splat(T::default());
+        let (copies, families) = (&self.law.copies, self.law.exponential.len());
         if let Some((fibres, from)) = &self.law.fibres {
-            energy += fibres.map(splat).energy(k, self.direction(simd, group, at, from));
+            let mut fibres = fibres.map(splat);
+            if let Some(copies) = copies {
+                fibres.eta = copies.eta(simd, group, at, families);
+            }
+            energy += fibres.energy(k, self.direction(simd, group, at, from));
         }
-        for (family, from) in &self.law.exponential {
-            energy += family.map(splat).energy(k, self.direction(simd, group, at, from));
+        for (number, (family, from)) in self.law.exponential.iter().enumerate() {
+            let mut family = family.map(splat);
+            if let Some(copies) = copies {
+                copies.stiffen(simd, (group, at), (number, families), &mut family);
+            }
+            energy += family.energy(k, self.direction(simd, group, at, from));
         }
         energy
     }

@@ -1,10 +1,11 @@
 //! The material of a block, ready for its kernel.
 
-use super::OwnKernels;
+use super::{LawCopies, OwnKernels};
 use crate::components::FamilyDirection;
 use crate::materials::{Elastic, ElasticLaw, ExponentialFibre, Fibres, PronyTerm};
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
+use std::sync::Arc;
 
 /// All that a block's kernel needs of its material, in the kernel's precision. What the material does not have is
 /// `None` or empty, and costs nothing.
@@ -22,6 +23,8 @@ pub struct BlockLaw<T: Scalar> {
     pub volumetric: Vec<PronyTerm<T>>,
     /// Whether the relaxed isochoric stress is freed of what is a pressure by now.
     pub reproject: bool,
+    /// Parameters that differ from copy to copy of the body, in place of those above: the first copy's.
+    pub copies: Option<Arc<LawCopies<T>>>,
     /// Kernels in f32 that know the elastic law since they were compiled.
     pub own_kernels: Option<OwnKernels>,
 }
@@ -37,6 +40,26 @@ impl<T: Scalar> BlockLaw<T> {
     /// Numbers of viscous history that an element with so many integration points has.
     pub fn memory_numbers(&self, points: usize) -> usize {
         6 * self.prony.len() * points + self.volumetric.len()
+    }
+
+    /// The elastic law of an element.
+    pub fn elastic_of(&self, row: usize) -> &ElasticLaw<T> {
+        self.copies.as_ref().map_or(&self.elastic, |copies| &copies.of_row(row).elastic)
+    }
+
+    /// The fibres of an element.
+    pub fn fibres_of(&self, row: usize) -> Option<(Fibres<T>, &FamilyDirection<T>)> {
+        let (fibres, from) = self.fibres.as_ref()?;
+        let of_copy = self.copies.as_ref().and_then(|copies| copies.of_row(row).fibres);
+        Some((of_copy.unwrap_or(*fibres), from))
+    }
+
+    /// The families of fibres of an element that stiffen exponentially.
+    pub fn families_of(&self, row: usize) -> impl Iterator<Item = (ExponentialFibre<T>, &FamilyDirection<T>)> {
+        self.exponential.iter().enumerate().map(move |(number, (family, from))| {
+            let of_copy = self.copies.as_ref().and_then(|copies| copies.of_row(row).exponential.get(number));
+            (*of_copy.unwrap_or(family), from)
+        })
     }
 
     /// Whether it is its elastic law and nothing else.
@@ -67,6 +90,7 @@ impl<T: Scalar> BlockLaw<T> {
             prony: terms(&self.prony),
             volumetric: terms(&self.volumetric),
             reproject: self.reproject,
+            copies: self.copies.as_ref().map(|copies| Arc::new(copies.rounded())),
             own_kernels: self.own_kernels.clone(),
         }
     }

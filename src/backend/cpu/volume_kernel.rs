@@ -44,6 +44,7 @@ impl<E: Element, T: SimdScalar> WithSimd for PatchVolumes<'_, E, T> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
+        // no built-in law measures strain or volume by its parameters: those of the first copy do for all
         let elastic = self.elastic.map(
             #[inline(always)]
             |number: T| T::splat(simd, number),

@@ -1,6 +1,7 @@
 //! A scene without parts: what they hold, placed, under the names that it has in the scene.
 
 use super::placement::Placement;
+use crate::scene::copied_material::split;
 use crate::scene::schema::{
     Attachment, Constraint, Contact, Curve, LoadPartsMut, Part, PartScene, Quantity, Scene, When,
 };
@@ -163,6 +164,15 @@ impl Naming<'_> {
         *name = format!("{}.{name}", self.part);
     }
 
+    /// The place of a parameter under `materials`; what is none is told when the scene is validated.
+    fn parameter(&self, key: String) -> String {
+        let Ok((mut material, way)) = split(&key) else { return key };
+        self.name(&mut material);
+        let mut place = Path::default().name(material);
+        place.0.extend(way.0);
+        place.to_string()
+    }
+
     fn keys<T>(&self, map: &mut BTreeMap<String, T>) {
         *map = std::mem::take(map).into_iter().map(|(key, value)| (format!("{}.{key}", self.part), value)).collect();
     }
@@ -210,6 +220,8 @@ impl Naming<'_> {
         for body in content.bodies.values_mut() {
             self.name(&mut body.material);
             body.regions.iter_mut().for_each(|region| self.name(&mut region.material));
+            let per_copy = std::mem::take(&mut body.per_copy).into_iter();
+            body.per_copy = per_copy.map(|(key, values)| (self.parameter(key), values)).collect();
         }
         for (number, constraint) in content.constraints.iter_mut().enumerate() {
             let path = self.path.name("constraints").index(number);

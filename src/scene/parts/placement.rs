@@ -173,7 +173,17 @@ impl Placement {
                 self.select(on);
                 self.axes(axes)
             }
-            Constraint::Prescribed { body: _, on, axes, displacement, gradient, rotation, center, curve: _ } => {
+            Constraint::Prescribed {
+                body: _,
+                on,
+                axes,
+                displacement,
+                gradient,
+                rotation,
+                center,
+                per_copy: _,
+                curve: _,
+            } => {
                 self.select(on);
                 self.way(displacement);
                 self.gradient(gradient);

@@ -1,6 +1,6 @@
 //! What holds bodies and takes from them: constraints, courses in time, removal.
 
-use super::Select;
+use super::{PerCopy, Select};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -43,6 +43,9 @@ pub enum Constraint {
         /// The fixed point of gradient and rotation (m).
         #[serde(default)]
         center: DVec3,
+        /// What the motion is multiplied with on each of the body's copies; not with a rotation.
+        #[serde(default)]
+        per_copy: Option<Box<PerCopy>>,
         /// Course in time.
         #[serde(default)]
         curve: Curve,

@@ -1,9 +1,10 @@
 //! Bodies and their meshes.
 
-use super::{ElementKind, Select};
+use super::{ElementKind, PerCopy, Select};
 use crate::mesh::CellKind;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// A body: a mesh, what it is made of, where it is and how it starts.
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
@@ -38,6 +39,10 @@ pub struct Body {
     /// How far each copy stands from the one before (m); they may stand in the same place.
     #[serde(default)]
     pub apart: DVec3,
+    /// Parameters of its materials that differ from copy to copy, by their places under `materials`:
+    /// "tissue.neo_hookean.young".
+    #[serde(default)]
+    pub per_copy: BTreeMap<String, PerCopy>,
     /// Velocity at the start (m/s).
     #[serde(default)]
     pub velocity: DVec3,
@@ -55,6 +60,13 @@ pub struct Body {
     /// tetrahedra to their mean; 0 leaves their hourglass modes free.
     #[serde(default = "one")]
     pub hourglass: f64,
+}
+
+impl Body {
+    /// The names of the materials that its elements may have.
+    pub fn materials(&self) -> impl Iterator<Item = &str> {
+        std::iter::once(&self.material).chain(self.regions.iter().map(|region| &region.material)).map(String::as_str)
+    }
 }
 
 /// A fine surface that a body's mesh carries: it stands where the mesh does, and is scaled, turned and moved with it.

@@ -1,6 +1,6 @@
 //! Loads: what there are, and what the rest of the program knows of each kind.
 
-use super::{Curve, Select};
+use super::{Curve, PerCopy, Select};
 use crate::scene::load_parts::{Amplitude, LoadParts, LoadPartsMut, On, Usual};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -32,10 +32,9 @@ pub enum Load {
         /// Whether each node gets the force, or all together.
         #[serde(default)]
         share: Share,
-        /// What the force is multiplied with on the first and on the last of the body's copies; on those between
-        /// evenly.
+        /// What the force is multiplied with on each of the body's copies.
         #[serde(default)]
-        per_copy: Option<(f64, f64)>,
+        per_copy: Option<PerCopy>,
         /// Course in time.
         #[serde(default)]
         curve: Curve,
@@ -49,6 +48,9 @@ pub enum Load {
         on: Select,
         /// Pressure (Pa), positive inwards.
         pressure: f64,
+        /// What the pressure is multiplied with on each of the body's copies.
+        #[serde(default)]
+        per_copy: Option<PerCopy>,
         /// Course in time.
         #[serde(default)]
         curve: Curve,
@@ -62,6 +64,9 @@ pub enum Load {
         on: Select,
         /// Force per rest area (Pa).
         traction: DVec3,
+        /// What the traction is multiplied with on each of the body's copies.
+        #[serde(default)]
+        per_copy: Option<PerCopy>,
         /// Course in time.
         #[serde(default)]
         curve: Curve,
@@ -89,27 +94,27 @@ impl Load {
                 word: "NodalForce",
                 name: "nodal force",
                 body: body.as_ref(),
-                on: On::Nodes(on, *share, *per_copy),
+                on: On::Nodes(on, *share, per_copy.as_ref()),
                 field: ("force", "N"),
                 amplitude: *force,
                 usual: None,
                 curve,
             },
-            Load::Pressure { body, on, pressure, curve } => LoadParts {
+            Load::Pressure { body, on, pressure, per_copy, curve } => LoadParts {
                 word: "Pressure",
                 name: "pressure",
                 body: body.as_ref(),
-                on: On::Faces(on),
+                on: On::Faces(on, per_copy.as_ref()),
                 field: ("pressure", "Pa"),
                 amplitude: DVec3::X * *pressure,
                 usual: None,
                 curve,
             },
-            Load::Traction { body, on, traction, curve } => LoadParts {
+            Load::Traction { body, on, traction, per_copy, curve } => LoadParts {
                 word: "Traction",
                 name: "traction",
                 body: body.as_ref(),
-                on: On::Faces(on),
+                on: On::Faces(on, per_copy.as_ref()),
                 field: ("traction", "Pa"),
                 amplitude: *traction,
                 usual: None,
@@ -123,8 +128,8 @@ impl Load {
         let (on, amplitude, curve) = match self {
             Load::Gravity { acceleration, curve, .. } => (None, Amplitude::Vector(acceleration), curve),
             Load::NodalForce { body, on, force, curve, .. } => (Some((body, on)), Amplitude::Vector(force), curve),
-            Load::Pressure { body, on, pressure, curve } => (Some((body, on)), Amplitude::Number(pressure), curve),
-            Load::Traction { body, on, traction, curve } => (Some((body, on)), Amplitude::Vector(traction), curve),
+            Load::Pressure { body, on, pressure, curve, .. } => (Some((body, on)), Amplitude::Number(pressure), curve),
+            Load::Traction { body, on, traction, curve, .. } => (Some((body, on)), Amplitude::Vector(traction), curve),
         };
         LoadPartsMut { on, amplitude, curve }
     }

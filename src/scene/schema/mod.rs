@@ -9,6 +9,7 @@ mod load;
 mod material;
 mod output;
 mod part;
+mod per_copy;
 mod picture;
 mod scene;
 mod selection;
@@ -32,6 +33,7 @@ pub use material::{
 };
 pub use output::{Output, OutputField};
 pub use part::{OF_THE_WHOLE, Part, PartScene};
+pub use per_copy::PerCopy;
 pub use picture::{Colours, Cut, Field, Opacity, Picture};
 pub use scene::{EnergyGuard, Guard, Guards, Integration, Scene, StepBound, WhenUnstable};
 pub use selection::{Probe, Quantity, Select};
@@ -44,11 +46,12 @@ pub fn texts() -> impl Iterator<Item = &'static str> {
     TEXT.iter().chain(crate::materials::TEXTS).chain(crate::tools::TEXTS).copied()
 }
 
-const TEXT: [&str; 15] = [
+const TEXT: [&str; 16] = [
     include_str!("scene.rs"),
     include_str!("analysis.rs"),
     include_str!("part.rs"),
     include_str!("body.rs"),
+    include_str!("per_copy.rs"),
     include_str!("material.rs"),
     include_str!("action.rs"),
     include_str!("load.rs"),

@@ -1,7 +1,7 @@
 //! Constraints, loads, removal and probes: what they select and what they do.
 
-use super::{Validator, scene, select, show};
-use crate::scene::schema::{Axis, Constraint, LoadParts, On, Quantity, Scene, When};
+use super::{Validator, per_copy, scene, select, show};
+use crate::scene::schema::{Axis, Constraint, LoadParts, Quantity, Scene, When};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use glam::DVec3;
@@ -12,6 +12,15 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
         let (Constraint::Fixed { on, axes, .. } | Constraint::Prescribed { on, axes, .. }) = constraint;
         select::validate(validator, &path.name("on"), on);
         validate_axes(validator, &path.name("axes"), axes);
+        if let Constraint::Prescribed { body, rotation, per_copy: Some(values), .. } = constraint {
+            per_copy::of_body(scene_, validator, &path, body.as_ref(), Some(&**values));
+            if *rotation != DVec3::ZERO {
+                validator
+                    .out
+                    .error_at(path.name("per_copy"), "a rotation is the same in all copies")
+                    .note("leave `rotation` or `per_copy` out");
+            }
+        }
         if let Constraint::Prescribed { displacement, gradient, rotation, .. } = constraint
             && [displacement, rotation].into_iter().chain(gradient).all(|part| *part == DVec3::ZERO)
         {
@@ -24,16 +33,7 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
     for (i, load) in scene_.loads.iter().enumerate() {
         let path = scene("loads").index(i);
         let LoadParts { body, on, .. } = load.parts();
-        if let On::Nodes(_, _, Some(_)) = on {
-            let bodies = &scene_.bodies;
-            let named = body.map_or(bodies.values().next(), |name| bodies.get(name));
-            if named.is_some_and(|body| body.copies < 2) {
-                validator
-                    .out
-                    .error_at(path.name("per_copy"), "the body has one copy only")
-                    .note("give the body `copies`, or leave `per_copy` out");
-            }
-        }
+        per_copy::of_body(scene_, validator, &path, body, on.per_copy());
         if let Some(on) = on.select() {
             select::validate(validator, &path.name("on"), on);
         }

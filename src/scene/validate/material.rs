@@ -30,7 +30,7 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
     }
 }
 
-fn validate_material(validator: &mut Validator, path: &Path, name: &str, material: &Material) {
+pub(super) fn validate_material(validator: &mut Validator, path: &Path, name: &str, material: &Material) {
     validator.above_zero(&path.name("density"), material.density, "kg/m³");
     elastic_law::validate(validator, path, name, material);
     if let Some(fibres) = &material.fibres {

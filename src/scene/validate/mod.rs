@@ -12,6 +12,7 @@ mod names;
 mod numbers;
 mod output;
 mod own_system;
+mod per_copy;
 mod picture;
 mod select;
 mod solver;
@@ -36,6 +37,7 @@ pub fn validate(file: &SceneFile, diagnostics: &mut Diagnostics) -> bool {
     names::validate(file, &mut validator);
     material::validate(&file.scene, &mut validator);
     geometry::validate(file, &mut validator);
+    per_copy::validate(file, &mut validator);
     action::validate(&file.scene, &mut validator);
     own_system::validate(&file.scene, &mut validator);
     tool::validate(file, &mut validator);

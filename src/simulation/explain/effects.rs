@@ -1,7 +1,7 @@
 //! What blocks and bodies have or lack, and what would give it to them.
 
 use super::{Effect, Part, ScenePart};
-use crate::backend::cpu::{BlockLaw, Cpu, kernel_effects};
+use crate::backend::cpu::{BlockLaw, Cpu, PerCopyLaw, kernel_effects};
 use crate::backend::user_law::LawCheck;
 use crate::components::*;
 use crate::elements::with_element;
@@ -67,6 +67,17 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
                 format!("shear modulus {shear} Pa, bulk modulus {bulk} Pa{}", trial(block.material, world))
             }),
             turned_on_by: format!("an elastic law in the material {material}"),
+        },
+        Effect {
+            name: "parameters per copy",
+            on: entity.get::<PerCopyLaw>().map(|PerCopyLaw(copies)| {
+                let moduli = copies.of_copy.iter().map(|of_copy| of_copy.elastic.small_strain_moduli()[0]);
+                let ends =
+                    moduli.fold((f64::INFINITY, 0.0_f64), |(low, high), shear| (low.min(shear), high.max(shear)));
+                let (low, high) = (short(ends.0), short(ends.1));
+                format!("{} copies, shear moduli from {low} to {high} Pa", copies.of_copy.len())
+            }),
+            turned_on_by: format!("`per_copy` in the body {body}"),
         },
         Effect {
             name: "averaged nodal pressure",

@@ -136,7 +136,7 @@ impl OnDevice {
             upload(world, coarse.coarse_inverse, &layout.inverse)?;
             let aggregates = layout.room().aggregates as u32;
             self.extent = Extent { aggregates, unknowns: layout.rows.len() as u32, ..self.extent };
-            world.resource_mut::<Device>().rewrite_uniform(EXTENT, &self.extent.bytes())?;
+            world.resource_mut::<Device>().rewrite(EXTENT, &self.extent.bytes())?;
             self.made = Some(system.preconditioner.made());
         }
         upload(world, coarse.turns, &turns(&pieces))

@@ -9,6 +9,7 @@ fn law(elastic: ElasticLaw<f64>) -> BlockLaw<f64> {
         prony: vec![],
         volumetric: vec![],
         reproject: false,
+        copies: None,
         own_kernels: None,
     }
 }

@@ -13,6 +13,7 @@ inputs, grabbing, snapshots, errors, pictures, sweeps (:func:`sinew.sweep`), rei
 
 from collections.abc import Mapping
 
+from ._copies import per_copy
 from ._errors import Bug, Error, GpuError, NotConverged, SceneError, SnapshotError, Unstable
 from ._sinew import Body, Grab, Inputs, Pick, Picture, Scene, Simulation, Snapshot, __version__
 from ._sweep import Row, grid, latin_hypercube, sweep
@@ -39,5 +40,6 @@ __all__ = [
     "__version__",
     "grid",
     "latin_hypercube",
+    "per_copy",
     "sweep",
 ]

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import gymnasium
 import numpy as np
 from gymnasium import spaces
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from ._errors import Unstable
@@ -101,3 +105,81 @@ class TissueEnv(gymnasium.Env[Array, Array]):
             return of.positions() if what == "positions" else of.displacements()
         there = [*self.simulation.scene.probes, *(f"{body}.positions" for body in self.simulation.scene.bodies)]
         raise ValueError(f"{name!r} cannot be observed; there is {', '.join(there)}, and `.displacements` of bodies")
+
+
+class TissueVectorEnv(VectorEnv[Array, Array, NDArray[Any]]):
+    """Several environments side by side: simulations of their own that step on threads, each on one at a time.
+
+    scenes: one scene for all of them, or one for each.
+    count: how many there are of one scene.
+    workers: threads that step them; as many as the machine has processors when left out, and no more than environments.
+    words: those of TissueEnv. What they call (`reward`, `done`) is called on these threads.
+
+    What `reset` and `step` return has the bits of each environment by itself, whatever `workers` is. An environment
+    whose episode has ended begins anew with the next `step`, whose action for it is not used
+    (`AutoresetMode.NEXT_STEP`).
+    """
+
+    metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
+
+    def __init__(
+        self, scenes: Scene | Sequence[Scene], count: int | None = None, *, workers: int | None = None, **words: Any
+    ) -> None:
+        if isinstance(scenes, Scene) == (count is None):
+            raise ValueError("one scene and a count, or a scene for each environment")
+        each = [scenes] * (count or 0) if isinstance(scenes, Scene) else list(scenes)
+        if not each:
+            raise ValueError("there is no environment")
+        self.envs = [TissueEnv(scene, **words) for scene in each]
+        self.num_envs = len(self.envs)
+        self.single_action_space = self.envs[0].action_space
+        self.single_observation_space = self.envs[0].observation_space
+        for env in self.envs:
+            if env.observation_space != self.single_observation_space:
+                raise ValueError("observations of all environments must have the same shape")
+        self.action_space = batch_space(self.single_action_space, self.num_envs)
+        self.observation_space = batch_space(self.single_observation_space, self.num_envs)
+        self._pool = ThreadPoolExecutor(workers or min(self.num_envs, os.cpu_count() or 1))
+        self._ended = np.zeros(self.num_envs, np.bool_)
+
+    def reset(
+        self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Array, dict[str, Any]]:
+        """Goes back to the start of all scenes. A number n for a seed is n, n + 1, ... of the environments."""
+        seeds = [seed] * self.num_envs if seed is None else seed
+        if isinstance(seeds, int):
+            seeds = [seeds + number for number in range(self.num_envs)]
+        if len(seeds) != self.num_envs:
+            raise ValueError(f"there are {len(seeds)} seeds for {self.num_envs} environments")
+        self._ended[:] = False
+        found = list(self._pool.map(lambda env, seed: env.reset(seed=seed, options=options), self.envs, seeds))
+        return np.stack([seen for seen, _ in found]), self._together([info for _, info in found])
+
+    def step(
+        self, actions: Array
+    ) -> tuple[Array, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
+        """Sets the inputs of all, an action a row, and simulates a frame of each."""
+
+        def one(env: TissueEnv, ended: bool, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
+            if ended:
+                seen, info = env.reset()
+                return seen, 0.0, False, False, info
+            return env.step(action)
+
+        if len(actions) != self.num_envs:
+            raise ValueError(f"there are {len(actions)} actions for {self.num_envs} environments")
+        found = list(self._pool.map(one, self.envs, self._ended, actions))
+        seen, rewards, terminated, truncated, infos = zip(*found, strict=True)
+        ends = np.array(terminated, np.bool_), np.array(truncated, np.bool_)
+        self._ended = ends[0] | ends[1]
+        return np.stack(seen), np.array(rewards, np.float64), *ends, self._together(infos)
+
+    def close_extras(self, **_: Any) -> None:
+        """Ends the threads."""
+        self._pool.shutdown()
+
+    def _together(self, each: Sequence[dict[str, Any]]) -> dict[str, Any]:
+        infos: dict[str, Any] = {}
+        for number, info in enumerate(each):
+            infos = self._add_info(infos, info, number)
+        return infos

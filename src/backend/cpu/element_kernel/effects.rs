@@ -41,11 +41,15 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
         k: &Kinematics<T::Vector<S>>,
     ) -> Sym3<T::Vector<S>> {
         let mut stress = Sym3([T::splat(simd, T::default()); 6]);
-        for (family, direction) in &self.law.exponential {
-            let family = family.map(
+        let families = self.law.exponential.len();
+        for (number, (family, direction)) in self.law.exponential.iter().enumerate() {
+            let mut family = family.map(
                 #[inline(always)]
                 |number: T| T::splat(simd, number),
             );
+            if let Some(copies) = &self.law.copies {
+                copies.stiffen(simd, (self.first_group + group, at), (number, families), &mut family);
+            }
             let direction = self.direction(simd, group, at, direction);
             stress = stress.plus(&simd.vectorize(Exponential { family: &family, k, direction }));
         }

@@ -31,6 +31,27 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
         InRegisters { elastic: splat!(self.elastic), fibres: splat!(fibres), along_squared: [[T::default(); LANES]; 6] }
     }
 
+    /// Parameters of a register full of elements, where they differ from copy to copy.
+    #[inline(always)]
+    pub(super) fn take_parameters<S: Simd>(
+        &self,
+        simd: S,
+        group: usize,
+        at: usize,
+        law: &mut InRegisters<L::Of<T::Vector<S>>, T, S>,
+    ) {
+        // a constant, so that only the kernel that asks for everything asks for this
+        if const { EFFECTS & GENERIC != 0 }
+            && let Some(copies) = &self.law.copies
+        {
+            let group = self.first_group + group;
+            law.elastic = copies.elastic(simd, self.elastic, group, at);
+            if self.law.fibres.is_some() {
+                law.fibres.eta = copies.eta(simd, group, at, self.law.exponential.len());
+            }
+        }
+    }
+
     /// First Piola-Kirchhoff stress (Pa) at a point, and J there.
     #[inline(always)]
     pub(super) fn stress<S: Simd>(

@@ -1,0 +1,154 @@
+//! What differs from copy to copy of a body: places of numbers, and materials that each copy can have.
+
+use super::{Validator, material, scene, show};
+use crate::scene::copied_material::{CopiedMaterial, parameters, split};
+use crate::scene::load::SceneFile;
+use crate::scene::schema::{Body, Material, PerCopy, Scene};
+use crate::scene::suggest::choice;
+use crate::scene::syntax::Path;
+use std::collections::BTreeSet;
+
+pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
+    for (name, body) in &file.scene.bodies {
+        let path = scene("bodies").name(name).name("per_copy");
+        if body.per_copy.is_empty() {
+            continue;
+        }
+        if !has_copies(validator, &path, body) {
+            continue;
+        }
+        let mut places = BTreeSet::new();
+        let mut all_well = true;
+        for (key, values) in &body.per_copy {
+            let path = path.name(key);
+            if let Err((message, notes)) = place(&file.scene, body, key, &mut places) {
+                validator.out.error_at(&path, message).notes(notes);
+                all_well = false;
+            }
+            all_well &= numbers(validator, &path, values, body.copies);
+        }
+        if all_well {
+            materials(file, body, &path, validator);
+        }
+    }
+}
+
+/// Looks at what an action on a body, the only one where none is named, is multiplied with in each copy.
+pub(super) fn of_body(
+    scene_: &Scene,
+    validator: &mut Validator,
+    path: &Path,
+    name: Option<&String>,
+    values: Option<&PerCopy>,
+) {
+    let body = name.map_or(scene_.bodies.values().next(), |name| scene_.bodies.get(name));
+    let (Some(body), Some(values)) = (body, values) else { return };
+    let path = path.name("per_copy");
+    if has_copies(validator, &path, body) {
+        numbers(validator, &path, values, body.copies);
+    }
+}
+
+/// Whether a body has copies that may differ.
+fn has_copies(validator: &mut Validator, path: &Path, body: &Body) -> bool {
+    if body.copies < 2 {
+        let told = validator.out.error_at(path, "the body has one copy only");
+        told.note("give the body `copies`, or leave `per_copy` out");
+    }
+    body.copies > 1
+}
+
+/// Looks whether a key leads to a parameter that may differ, and nothing else has led there.
+fn place(
+    scene_: &Scene,
+    body: &Body,
+    key: &str,
+    places: &mut BTreeSet<(String, String)>,
+) -> Result<(), (String, Vec<String>)> {
+    let example = vec!["such as \"tissue.fibres.eta\", a parameter of the material `tissue`".to_string()];
+    let (name, way) = split(key).map_err(|message| (message, example))?;
+    let used: Vec<&str> = body.materials().collect();
+    let Some(found) = scene_.materials.get(&name).filter(|_| used.contains(&name.as_str())) else {
+        return Err((format!("the body has no material `{name}`"), choice(&name, used)));
+    };
+    let (way, allowed) = (way.to_string(), parameters(found));
+    if !allowed.contains(&way) {
+        let message = format!("`{way}` of the material `{name}` cannot differ from copy to copy");
+        return Err((message, choice(&way, allowed.iter().map(String::as_str))));
+    }
+    if has_no_weight(found, &way) {
+        let message = format!("the material `{name}` has fibres of no stiffness: they do not exist");
+        return Err((message, vec!["give them a stiffness above 0 there, of any size".to_string()]));
+    }
+    if !places.insert((name, way)) {
+        return Err((format!("`{key}` stands here twice, written otherwise"), Vec::new()));
+    }
+    Ok(())
+}
+
+/// Whether what a way leads to is of fibres that have no weight.
+fn has_no_weight(material: &Material, way: &str) -> bool {
+    let families = material.exponential_fibres.iter().flatten().enumerate();
+    let of_none = |(number, k1): (usize, f64)| k1 == 0.0 && way.starts_with(&format!("exponential_fibres[{number}]"));
+    let fibres = material.fibres.as_ref().is_some_and(|fibres| fibres.eta == 0.0);
+    fibres && way.starts_with("fibres.") || families.map(|(number, family)| (number, family.k1)).any(of_none)
+}
+
+/// Whether there is a number for each copy.
+fn numbers(validator: &mut Validator, path: &Path, values: &PerCopy, copies: u32) -> bool {
+    match values {
+        PerCopy::Values(values) if values.len() != copies as usize => {
+            let message = format!("there are {} values for {copies} copies", values.len());
+            validator.out.error_at(path, message).note("give one a copy");
+            false
+        }
+        PerCopy::LogUniform { from, to, .. } if !(*from > 0.0 && *to > 0.0) => {
+            let found = format!("{} and {}", show(*from), show(*to));
+            validator.out.error_at(path, format!("`LogUniform` lies between numbers above 0, found {found}"));
+            false
+        }
+        PerCopy::Uniform { from, to, .. } | PerCopy::LogUniform { from, to, .. } if from > to => {
+            let message = format!("`from` must not be above `to`, found {} and {}", show(*from), show(*to));
+            validator.out.error_at(path, message);
+            false
+        }
+        _ => true,
+    }
+}
+
+/// Looks at the materials of all copies, and tells of the first that is wrong.
+fn materials(file: &SceneFile, body: &Body, path: &Path, validator: &mut Validator) {
+    for name in body.materials().collect::<BTreeSet<&str>>() {
+        let Some(material) = file.scene.materials.get(name) else { continue };
+        let Some(copied) = CopiedMaterial::of(body, name, material) else { continue };
+        let mut of_all = file.diagnostics();
+        material::validate_material(
+            &mut Validator { out: &mut of_all },
+            &scene("materials").name(name),
+            name,
+            material,
+        );
+        if of_all.has_errors() {
+            // told already
+            continue;
+        }
+        for copy in 0..body.copies as usize {
+            let mut told = file.diagnostics();
+            let of_copy = copied.of_copy(copy);
+            if let Some(of_copy) = &of_copy {
+                let place = scene("materials").name(name);
+                material::validate_material(&mut Validator { out: &mut told }, &place, name, of_copy);
+            }
+            if of_copy.is_some() && !told.has_errors() {
+                continue;
+            }
+            let (key, found) = copied.parameters(copy);
+            let first = told.list().into_iter().find(|told| told.severity == crate::scene::Severity::Error);
+            let message = first.map_or("the material cannot be read", |told| &told.message);
+            let notes = first.map_or(Vec::new(), |told| told.notes.clone());
+            let told = validator.out.error_at(path.name(key), format!("copy {copy}, with {found}: {message}"));
+            told.notes(notes);
+            break;
+        }
+    }
+}

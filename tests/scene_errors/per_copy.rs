@@ -1,0 +1,114 @@
+//! Parameters that differ from copy to copy: what is wrong with them, and in which copy.
+
+use crate::complaints::told_of;
+
+/// What is said of a body with so many copies and what differs in them.
+fn told(copies: u32, per_copy: &str) -> String {
+    let text = format!(
+        "(duration: 0.1, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (1, 1, 1)), material: \"m\", copies: {copies},
+    per_copy: {{{per_copy}}})}},
+materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45),
+        fibres: (eta: 0, direction: Along(0, 0, 1)), exponential_fibres: [(k1: 5, k2: 1, direction: Along(0, 0, 1))]),
+    \"other\": (density: 1000, law: (energy: \"mu*I1bar_minus_3 + k*J_minus_1^2\", parameters: {{\"mu\": 100, \"k\": 900}}))}})"
+    );
+    let told = told_of(&text, std::path::Path::new("."));
+    told.lines().filter(|line| !line.contains("no body uses")).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn parameters_that_copies_can_have_are_no_mistake() {
+    let well = [
+        "\"m.neo_hookean.young\": Linear(500, 2000)",
+        "\"m.neo_hookean.young\": LogUniform(from: 500, to: 2e4), \"m.neo_hookean.poisson\": Uniform(from: 0.3, to: 0.4, seed: 7)",
+        "\"m.exponential_fibres[0].k1\": Values([0, 1, 2])",
+    ];
+    for per_copy in well {
+        assert_eq!(told(3, per_copy), "", "{per_copy}");
+    }
+}
+
+#[test]
+fn what_is_wrong_is_told_with_the_copy_and_what_is_allowed() {
+    let cases = [
+        (1, "\"m.neo_hookean.young\": Linear(1, 2)", "error: the body has one copy only | give the body `copies`"),
+        (3, "\"young\": Linear(1, 2)", "error: `young` names no parameter of a material | such as"),
+        (3, "\"n.neo_hookean.young\": Linear(1, 2)", "error: the body has no material `n` | "),
+        (3, "\"other.law.parameters.mu\": Linear(1, 2)", "error: the body has no material `other` | "),
+        (
+            3,
+            "\"m.neo_hookean.yuong\": Linear(1, 2)",
+            "error: `neo_hookean.yuong` of the material `m` cannot differ from copy to copy | did you mean `neo_hookean.young`?",
+        ),
+        (3, "\"m.density\": Linear(1, 2)", "error: `density` of the material `m` cannot differ from copy to copy | "),
+        (
+            3,
+            "\"m.fibres.direction[0]\": Linear(1, 2)",
+            "error: `fibres.direction[0]` of the material `m` cannot differ",
+        ),
+        (3, "\"m.fibres.eta\": Linear(1, 2)", "error: the material `m` has fibres of no stiffness: they do not exist"),
+        (3, "\"m.neo_hookean.young\": Values([1e3, 2e3])", "error: there are 2 values for 3 copies | give one a copy"),
+        (
+            3,
+            "\"m.neo_hookean.young\": LogUniform(from: 0, to: 1)",
+            "error: `LogUniform` lies between numbers above 0, found 0 and 1",
+        ),
+        (3, "\"m.neo_hookean.young\": Uniform(from: 3, to: 2)", "error: `from` must not be above `to`, found 3 and 2"),
+        (
+            3,
+            "\"m.neo_hookean.young\": Values([1e3, 1e3, -2]), \"m.exponential_fibres[0].k2\": Linear(1, 2)",
+            "error: copy 2, with m.neo_hookean.young = -2, m.exponential_fibres[0].k2 = 2: `young` must be above 0, found -2 Pa",
+        ),
+        (
+            3,
+            "\"m.neo_hookean.poisson\": Linear(0.3, 0.6)",
+            "error: copy 2, with m.neo_hookean.poisson = 0.6: `poisson` must be between -1 and 0.5, found 0.6",
+        ),
+        (
+            3,
+            "\"m.neo_hookean.young\": Linear(1, 2), \"m.\\\"neo_hookean\\\".young\": Linear(1, 2)",
+            "error: `m.neo_hookean.young` stands here twice, written otherwise",
+        ),
+    ];
+    for (copies, per_copy, wanted) in cases {
+        let found = told(copies, per_copy);
+        assert!(found.contains(wanted) && found.lines().count() == 1, "{per_copy}: {found}");
+    }
+}
+
+#[test]
+fn factors_of_loads_and_motion_are_one_a_copy() {
+    let told = |copies: u32, action: &str| {
+        let text = format!(
+            "(duration: 0.1, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (1, 1, 1)), material: \"m\", copies: {copies})}},
+materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
+constraints: [Fixed(on: Set(\"z0\")),
+    {action}])"
+        );
+        told_of(&text, std::path::Path::new("."))
+    };
+    let pressure = |per_copy: &str| format!("], loads: [Pressure(on: Set(\"z1\"), pressure: 1, per_copy: {per_copy})");
+    assert_eq!(told(2, &pressure("Values([1, 2])")), "");
+    assert!(told(2, &pressure("Values([1])")).contains("error: there are 1 values for 2 copies"));
+    assert!(told(1, &pressure("Linear(1, 2)")).contains("error: the body has one copy only"));
+    let turned =
+        told(2, "Prescribed(on: Set(\"z1\"), rotation: (0, 0, 5), per_copy: Linear(1, 2), curve: Smooth(end: 0.1))");
+    assert!(turned.contains("error: a rotation is the same in all copies"), "{turned}");
+}
+
+/// A material of a part has the part's name before its own, also where copies differ.
+#[test]
+fn parts_bring_bodies_whose_copies_differ() {
+    let part = "(bodies: {\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (1, 1, 1)), material: \"m\", copies: 2,
+        per_copy: {\"m.neo_hookean.young\": Values([2e3, -1])})},
+    materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))})";
+    let files = std::collections::BTreeMap::from([("part.ron".to_string(), part.as_bytes().to_vec())]);
+    let text = "(duration: 0.1, parts: {\"p\": (scene: \"part.ron\")})";
+    let scene = sinew::SceneFile::from_memory("scene.ron", text, files, &[]).unwrap();
+    let mut told = scene.diagnostics();
+    sinew::scene::validate(&scene, &mut told);
+    let told = told.render(false);
+    assert!(
+        told.contains("copy 1, with p.m.neo_hookean.young = -1") || told.contains("copy 1, with \"p.m\".neo"),
+        "{told}"
+    );
+}
