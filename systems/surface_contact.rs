@@ -232,6 +232,14 @@ impl SurfaceContacts {
         self.meetings[body * count..(body + 1) * count].iter().flatten().any(|meeting| meeting.faces)
     }
 
+    /// The largest share of a spring between a body and what it meets, if there is one.
+    pub(crate) fn largest_share(&self, body: Entity) -> Option<f64> {
+        let number = self.bodies.iter().position(|&other| other == body)?;
+        let count = self.bodies.len();
+        let of_body = self.meetings[number * count..(number + 1) * count].iter().flatten();
+        of_body.filter_map(|meeting| meeting.spring).map(|spring| spring.share).reduce(f64::max)
+    }
+
     /// Whether there is any friction.
     fn has_friction(&self) -> bool {
         self.meetings.iter().flatten().any(|meeting| meeting.friction != [0.0; 2])
@@ -279,7 +287,9 @@ fn surface_contact(
 ) -> Result<(), Error> {
     let contacts = &mut *contacts;
     match clock.springs.map(|springs| springs.forces) {
-        None | Some(SpringForces::Sought) => survey::follow(contacts, &mut bodies, &authorings, &blocks),
+        None | Some(SpringForces::Sought | SpringForces::Stepped) => {
+            survey::follow(contacts, &mut bodies, &authorings, &blocks)
+        }
         Some(SpringForces::Tried | SpringForces::Noted) => {}
         Some(SpringForces::Omitted) => return Ok(()),
     }
@@ -297,10 +307,14 @@ fn step<T: Scalar>(
     bodies: &mut Query<(Entity, MeetingColumns)>,
 ) -> Result<(), Error> {
     match &of.0.springs {
-        Some(springs) if springs.forces == SpringForces::Sought => {
+        Some(springs) if matches!(springs.forces, SpringForces::Sought | SpringForces::Stepped) => {
             contacts.surface.pairs.clear();
-            if let Some((true, mut bodies)) = search::<T>(contacts, of, bodies)? {
+            let Some((is_near, mut bodies)) = search::<T>(contacts, of, bodies)? else { return Ok(()) };
+            if is_near {
                 solved::pair(contacts, of.0, &mut bodies);
+            }
+            if springs.forces == SpringForces::Stepped {
+                solved::press(contacts, (of.0, springs), &mut bodies);
             }
         }
         // before the first step nobody has looked

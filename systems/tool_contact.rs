@@ -111,7 +111,7 @@ impl NodeSystem for ToolContacts {
             let values = &mut touches.values[touches.numbers * place..touches.numbers * (place + 1)];
             let row = row as usize - nodes.first;
             match &step.springs {
-                Some(springs) if springs.forces == SpringForces::Noted => {
+                Some(springs) if springs.forces.are_noted() => {
                     self.press((step, springs), (row, mask), nodes, values);
                 }
                 // the solver finds them apart

@@ -1,4 +1,3 @@
-
 use super::*;
 
 /// Against sums of a hundred thousand values.

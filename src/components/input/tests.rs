@@ -1,4 +1,3 @@
-
 use super::*;
 
 fn at(step: u64) -> Clock {

@@ -1,4 +1,3 @@
-
 use super::*;
 use crate::contact::{Faced, Listed, Placed, Point, Surfaces};
 use glam::DVec3;

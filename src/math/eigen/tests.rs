@@ -1,4 +1,3 @@
-
 use super::super::Scalar;
 use super::*;
 

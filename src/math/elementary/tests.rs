@@ -1,4 +1,3 @@
-
 use super::super::{LANES, Scalar, SimdScalar};
 use super::*;
 use pulp::{Simd, WithSimd};

@@ -1,4 +1,3 @@
-
 use super::*;
 use crate::math::LANES;
 use pulp::WithSimd;

@@ -1,4 +1,3 @@
-
 use super::*;
 
 const TICK: f64 = 1e-3;

@@ -1,4 +1,3 @@
-
 use super::*;
 
 fn motions_of(held: &[(usize, usize)]) -> Vec<[DVec3; 2]> {

@@ -1,4 +1,3 @@
-
 use super::*;
 
 /// A = G Gᵀ of a made-up G of full rank, and of one of whose rows one is the sum of two others.
