@@ -186,7 +186,7 @@ fn a_path_ends_after_as_many_points_as_are_wanted_and_is_refused_where_it_has_no
         )
     };
     let (points, simulation) =
-        follow_text(&scene("analysis: Static(method: Newton, arc: (first: 0.1, longest: 1e-4, points: 3))", ""));
+        follow_text(&scene("analysis: Static(method: Newton, arc: (first: 0.1, longest: 3e-4, points: 3))", ""));
     let factor = points.last().unwrap().factor;
     assert!(points.len() == 3 && factor > 0.1 && factor < 0.9, "{} points to {factor}", points.len());
     assert!((simulation.time() - factor).abs() < 1e-12, "{} s", simulation.time());

@@ -75,8 +75,9 @@ pub(super) fn solve(
             x[i] += cosines[1] * eta * next;
         }
         eta *= -sines[1];
-        // what is no number ends it, too
-        if !(eta.abs() > stop.tolerance * first && gamma_next > 0.0) {
+        // what is no number does not go on
+        let goes_on = eta.abs() > stop.tolerance * first && gamma_next > 0.0;
+        if !goes_on {
             return Ok(Solved { iterations: iteration, gives_way });
         }
         std::mem::swap(z, z_next);
