@@ -232,14 +232,6 @@ impl SurfaceContacts {
         self.meetings[body * count..(body + 1) * count].iter().flatten().any(|meeting| meeting.faces)
     }
 
-    /// The largest share of a spring between a body and what it meets, if there is one.
-    pub(crate) fn largest_share(&self, body: Entity) -> Option<f64> {
-        let number = self.bodies.iter().position(|&other| other == body)?;
-        let count = self.bodies.len();
-        let of_body = self.meetings[number * count..(number + 1) * count].iter().flatten();
-        of_body.filter_map(|meeting| meeting.spring).map(|spring| spring.share).reduce(f64::max)
-    }
-
     /// Whether there is any friction.
     fn has_friction(&self) -> bool {
         self.meetings.iter().flatten().any(|meeting| meeting.friction != [0.0; 2])

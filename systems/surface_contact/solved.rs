@@ -50,6 +50,16 @@ pub(super) struct Solved {
     slopes: [DMat3; 2],
 }
 
+impl SurfaceContacts {
+    /// The largest share of a spring between a body and what it meets, if there is one.
+    pub(crate) fn largest_share(&self, body: Entity) -> Option<f64> {
+        let number = self.bodies.iter().position(|&other| other == body)?;
+        let count = self.bodies.len();
+        let of_body = self.meetings[number * count..(number + 1) * count].iter().flatten();
+        of_body.filter_map(|meeting| meeting.spring).map(|spring| spring.share).reduce(f64::max)
+    }
+}
+
 /// Looks which points may touch what in the step that begins, where the clock says that this is wanted. Whether there
 /// are bodies that may meet.
 pub(crate) fn seek(world: &mut World) -> Result<bool, Error> {

@@ -3,8 +3,9 @@
 use crate::bits::start;
 use crate::configurations::near;
 use glam::DVec3;
-use sinew::Simulation;
 use sinew::components::{ContactForce, Precision};
+use sinew::{BackendChoice, Options, SceneFile, Simulation};
+use std::path::Path;
 
 const NEWTON: &str = "Static(method: Newton)";
 const RELAXED: &str = "Static(tolerance: 1e-9)";
@@ -48,8 +49,8 @@ fn block(share: f64, at: f64) -> String {
     )
 }
 
-/// One layer without lateral stretch, whose lower nodes have half of its mass: it sinks in by 2 g Δt²/share. Nothing but
-/// the table holds it; one that has to fall first is led there by relaxation.
+/// One layer without lateral stretch, whose lower nodes have half of its mass: it sinks in by 2 g Δt²/share. Nothing
+/// but the table holds it; one that has to fall first is led there by relaxation.
 #[test]
 fn a_block_rests_by_its_weight_on_a_table() {
     for (share, at) in [(0.1, 0.0), (1.0, 0.0), (10.0, 0.0), (100.0, 0.0), (1.0, 1e-3)] {
@@ -161,9 +162,9 @@ fn a_motion_begins_at_rest_on_springs() {
     }
 }
 
-/// Threads, glue and grasps hold what nothing else does.
+/// Threads and glue hold what nothing else does.
 #[test]
-fn what_is_sewn_glued_and_grasped_rests() {
+fn what_is_sewn_and_glued_rests() {
     let scene = |more: &str| {
         format!(
             "(duration: 1, analysis: ANALYSIS,
@@ -187,5 +188,55 @@ fn what_is_sewn_glued_and_grasped_rests() {
         println!("{what}");
         let mut simulation = by_newton(&text);
         near(&format!("{what}: weight of both"), simulation.probe("top").unwrap()[0].abs(), 2.0 * weight, weight, 1e-7);
+    }
+}
+
+/// Two blocks that are held at their far ends and come to each other across a gap, by half an edge and more: who meets
+/// whom is found on the way.
+#[test]
+fn blocks_that_are_led_to_each_other_press_as_on_the_way_of_relaxation() {
+    for points in ["Nodes", "Faces"] {
+        let text = format!(
+            "(duration: 1, analysis: ANALYSIS,
+            bodies: {{\"low\": (mesh: Box(size: (0.02, 0.02, 0.01), cells: (4, 4, 2), elements: Hex8MeanDilatation), material: \"m\"),
+                \"high\": (mesh: Box(size: (0.01, 0.01, 0.01), cells: (3, 3, 3), elements: Hex8MeanDilatation), translate: (0.004, 0.003, 0.012), material: \"m\")}},
+            materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.4))}},
+            constraints: [Fixed(body: \"low\", on: Plane(normal: (0, 0, 1), at: 0)),
+                Prescribed(body: \"high\", on: Plane(normal: (0, 0, 1), at: 0.022), displacement: (0, 0, -3e-3))],
+            contacts: [Between(bodies: (\"low\", \"high\"), points: {points}, law: Penalty(share: 1))],
+            probes: {{\"base\": (body: \"low\", what: Force(direction: (0, 0, 1)), on: Plane(normal: (0, 0, 1), at: 0)),
+                \"lid\": (body: \"high\", what: Force(direction: (0, 0, 1)), on: Plane(normal: (0, 0, 1), at: 0.022))}})"
+        );
+        let mut solved = by_newton(&text);
+        let mut relaxed = rest(&text.replace("ANALYSIS", RELAXED));
+        let forces = ["base", "lid"].map(|probe| solved.probe(probe).unwrap()[0]);
+        assert!(forces[0].abs() > 0.01, "{points}: {forces:?}");
+        near(&format!("{points}: both ways"), forces[0] + forces[1], 0.0, forces[0].abs(), 1e-8);
+        for body in ["low", "high"] {
+            near(&format!("{points}: {body}"), apart(&mut solved, &mut relaxed, body), 0.0, 1.0, 1e-6);
+        }
+    }
+}
+
+/// Hard cases of rest with springs in place of the kinematic law: a ball between plates (H38) and a flat punch (H48).
+#[test]
+fn hard_cases_rest_where_relaxation_has_them() {
+    for (name, count, sets) in [("h38_pressed_ball", 2, vec!["bodies.body.mesh.across=8"]), ("h48_punch", 1, vec![])] {
+        let path = format!("{}/scenes/hard/{name}.ron", env!("CARGO_MANIFEST_DIR"));
+        let run = |analysis: &str| {
+            let laws = (0..count).map(|number| format!("contacts[{number}].law=Penalty(share: 1)"));
+            let mut all: Vec<String> = sets.iter().map(|set| set.to_string()).chain(laws).collect();
+            all.push(format!("analysis={analysis}"));
+            let file = SceneFile::load(Path::new(&path), &all).unwrap();
+            let options = Options { backend: BackendChoice::Cpu, precision: Precision::F64, ..Options::default() };
+            let mut simulation = Simulation::new(&file, &options).unwrap();
+            simulation.finish().unwrap();
+            println!("{name}: {:?}\n{:?}", simulation.equilibrium(), simulation.implicit_steps());
+            simulation
+        };
+        let (mut solved, mut relaxed) = (run(NEWTON), run(RELAXED));
+        let found = solved.equilibrium().unwrap();
+        assert!(found.newton_iterations > 0 && found.residual <= 1e-9, "{found:?}");
+        near(name, apart(&mut solved, &mut relaxed, "body"), 0.0, 1.0, 1e-6);
     }
 }

@@ -70,8 +70,8 @@ fn a_law_that_softens_is_followed_through_both_limit_points() {
     assert!(last.factor == 1.0 && last.seen[0] > 0.07 && !last.unstable, "{} m", last.seen[0]);
 }
 
-/// What bars of a width of such a mesh bend by under a small load at their ends, as a share of what a beam does: EI of a
-/// few layers of elements is not that of none.
+/// How stiff a bar of such a mesh is under a small load across its end, as a share of what a beam is: EI of a few layers
+/// of elements is not quite that.
 fn share_of_bending([length, side]: [f64; 2], cells: &str, young: f64) -> f64 {
     let (bending, force) = (young * side.powi(4) / 12.0, 1e-6 * young * side.powi(4) / (length * length));
     let scene = format!(
@@ -90,9 +90,10 @@ fn share_of_bending([length, side]: [f64; 2], cells: &str, young: f64) -> f64 {
     share
 }
 
-/// How hard a shallow arch of radius R, thickness t, width t and length L is pushed in the middle where it has gone down
-/// by so much: v'''' + T v''/EI = ... of v = Σ aₙ (1 − cos kₙx), which decouples for a given axial force T, and the
-/// force is a root of a quadratic equation (shallow arches: Schreyer & Masur 1966). Pairs of middle and force.
+/// How hard a shallow arch of radius R, thickness t, width t and length L is pushed in the middle where it has gone
+/// down by so much (m, N): its deflection is Σ aₙ (1 − cos 2πn x/L), whose aₙ do not know of each other for a given
+/// axial force, and the push is then a root of a quadratic equation (shallow arches: Schreyer & Masur 1966). `share` of
+/// EI is there.
 fn shallow_arch([radius, thickness, length]: [f64; 3], young: f64, share: f64) -> Vec<[f64; 2]> {
     let (bending, stretching) = (share * young * thickness.powi(4) / 12.0, young * thickness.powi(2));
     let k: Vec<f64> = (1..40).map(|n| 2.0 * PI * f64::from(n) / length).collect();
@@ -120,7 +121,7 @@ fn shallow_arch([radius, thickness, length]: [f64; 3], young: f64, share: f64) -
     found
 }
 
-/// The example: to what the theory of shallow arches leaves out, a twentieth (its ends slope by 0.3).
+/// The example, to what the theory leaves out where the ends slope by α = .3: α²/2.
 #[test]
 fn an_arch_snaps_where_the_theory_of_shallow_arches_has_it() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/snap.ron");
@@ -138,9 +139,9 @@ fn an_arch_snaps_where_the_theory_of_shallow_arches_has_it() {
         [found, expected]
     };
     let [highest, expected] = extreme([0.0, 0.8], &f64::max, 0.0);
-    assert!((highest - expected).abs() < 0.05 * expected, "{highest} N, expected {expected} N");
+    assert!((highest - expected).abs() < 0.045 * expected, "{highest} N, expected {expected} N");
     let [lowest, least] = extreme([0.8, 1.5], &f64::min, f64::INFINITY);
-    assert!((lowest - least).abs() < 0.05 * expected, "{lowest} N, expected {least} N");
+    assert!((lowest - least).abs() < 0.045 * least, "{lowest} N, expected {least} N");
     let last = points.last().unwrap();
     assert!(last.factor == 1.0 && !last.unstable && -last.seen[1] > 1.4 * rise, "{:?}", last.seen);
     assert!(points.iter().any(|point| point.unstable));

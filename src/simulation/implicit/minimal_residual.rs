@@ -1,5 +1,5 @@
-//! The minimal residual method for the linear system of a path of equilibria, whose operator need not be positive (Paige
-//! & Saunders 1975), with a preconditioner that is (Elman, Silvester & Wathen 2014, section 4.1).
+//! The minimal residual method for the linear system of a path of equilibria, whose operator need not be positive
+//! (Paige & Saunders 1975), with a preconditioner that is (Elman, Silvester & Wathen 2014, section 4.1).
 
 use super::conjugate_gradients::Stop;
 use super::preconditioner::Preconditioner;

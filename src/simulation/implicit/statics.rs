@@ -151,6 +151,7 @@ impl Statics {
                 Ok(Balance::Found { remaining, unstable }) => {
                     return Ok(Attempt::Found(self.rest(remaining, unstable, Vec::new())));
                 }
+                Ok(Balance::Loose) => return Ok(Attempt::NotFound),
                 Ok(Balance::NotHeld(motions)) => return Ok(Attempt::NotHeld(motions)),
                 Err(Lost::Error(error)) => return Err(Lost::Error(error)),
                 Ok(Balance::NotFound) | Err(Lost::Because(_)) => {
@@ -227,7 +228,7 @@ impl Statics {
         let motions = free_motions(newton.trial.world, newton.trial.axes, &newton.motion.free);
         match holds(&motions, &mut newton)? {
             Holds::Enough => {}
-            Holds::Perhaps => return Ok(Balance::NotFound),
+            Holds::Perhaps => return Ok(Balance::Loose),
             Holds::Nothing(motions) => return Ok(Balance::NotHeld(motions)),
         }
         let found = newton.solve();
@@ -273,8 +274,13 @@ fn not_followed(world: &mut World, what: String) -> Error {
 
 /// What came of a search for rest at a share of all loads.
 enum Balance {
-    Found { remaining: f64, unstable: bool },
+    Found {
+        remaining: f64,
+        unstable: bool,
+    },
     NotFound,
+    /// What may hold bodies does not touch them yet.
+    Loose,
     NotHeld(Vec<String>),
 }
 

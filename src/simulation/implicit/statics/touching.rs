@@ -1,5 +1,5 @@
-//! How loads and motions grow where bodies may touch something: so slowly that what meets is seen, and as fast as rest is
-//! found.
+//! How loads and motions grow where bodies may touch something: so slowly that what meets is seen, and as fast as rest
+//! is found.
 
 use crate::components::*;
 use crate::systems::SurfaceContacts;
