@@ -70,8 +70,8 @@ fn a_law_that_softens_is_followed_through_both_limit_points() {
     assert!(last.factor == 1.0 && last.seen[0] > 0.07 && !last.unstable, "{} m", last.seen[0]);
 }
 
-/// How stiff a bar of such a mesh is under a small load across its end, as a share of what a beam is: EI of a few layers
-/// of elements is not quite that.
+/// How stiff a bar of such a mesh is under a small load across its end, as a share of what a beam is: EI of a few
+/// layers of elements is not quite that.
 fn share_of_bending([length, side]: [f64; 2], cells: &str, young: f64) -> f64 {
     let (bending, force) = (young * side.powi(4) / 12.0, 1e-6 * young * side.powi(4) / (length * length));
     let scene = format!(

@@ -3,7 +3,7 @@
 use super::axes::{Axes, Motion};
 use super::formula::Formula;
 use super::newton::Workspace;
-use crate::components::Grasps;
+use crate::components::{ExternalForce, Grasps, InternalForce};
 use crate::systems::{HeldNode, held_in_step, note_held};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -34,6 +34,19 @@ impl Grasped {
             all.push((node, first, own));
         }
         Self(all)
+    }
+
+    /// Makes the forces of tools loads at rest, where they balance those of elements and all others.
+    pub fn load(&self, world: &mut World) {
+        for (HeldNode { body, row, .. }, _, own) in &self.0 {
+            let Some(internal) = world.get::<InternalForce>(*body).map(|internal| internal.vector(*row)) else {
+                continue;
+            };
+            let Some(mut external) = world.get_mut::<ExternalForce>(*body) else { continue };
+            for i in (0..3).filter(|&i| own[i]) {
+                external.set(3 * row + i, internal[i]);
+            }
+        }
     }
 
     /// Notes the forces of tools at the end of a step of h (s): what balances forces, damping and inertia there.

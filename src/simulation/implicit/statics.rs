@@ -251,6 +251,7 @@ impl Statics {
             Some(steps) => trial.noted_forces(w, Some(steps), net)?,
             None => trial.forces(w, None, net)?,
         };
+        grasped.load(trial.world);
         step.fill(0.0);
         acceleration.fill(0.0);
         axes.arrive(trial.world, w, step, acceleration);
