@@ -53,9 +53,13 @@ pub(super) fn insert_fictitious_masses(assembly: &Assembly<'_>, world: &mut Worl
     }
 }
 
+/// Facets around a node of a surface of triangles, about; of quadrilaterals they are four.
+const FACETS: f64 = 6.0;
+
 /// Adds what springs of contact at a body's nodes are stable with (kg). One of a tool acts on its node alone. One
 /// between surfaces moves a point of weights w, and (Σ w x)² ≤ Σ|w| Σ|w| x², with Σ|w| = 2: each node bears twice its
-/// own spring, and about twice that of the heaviest point that may meet it.
+/// own spring, and about twice that of the heaviest point that may meet it. Points of faces share the nodes of their
+/// facets: those of each facet around a node make one spring of it.
 fn of_springs(world: &World, body: Entity, inertia: &mut [f64]) {
     let clock = world.resource::<Clock>();
     let (Some(springs), Some(mass)) = (clock.springs, world.get::<Mass>(body)) else { return };
@@ -74,8 +78,10 @@ fn of_springs(world: &World, body: Entity, inertia: &mut [f64]) {
         rows.0.iter().map(|&row| mass.get(row as usize)).fold(0.0, f64::max)
     };
     let heaviest = contacts.bodies.iter().map(of_body).fold(0.0, f64::max);
+    let has_face_points = (0..contacts.bodies.len()).any(|body| contacts.has_face_points(body));
+    let points = if has_face_points { FACETS } else { 1.0 };
     for &row in &rows.0 {
-        inertia[row as usize] += 2.0 * of_share(share, mass.get(row as usize) + heaviest);
+        inertia[row as usize] += 2.0 * points * of_share(share, mass.get(row as usize) + heaviest);
     }
 }
 

@@ -49,13 +49,15 @@ impl Grasped {
         }
     }
 
-    /// Notes the forces of tools at the end of a step of h (s): what balances forces, damping and inertia there.
+    /// Notes the forces of tools at the end of a step of h (s): what balances forces, damping and inertia there; at rest
+    /// forces alone.
     pub fn note(&self, world: &mut World, (formula, h, motion): (&Formula, f64, &Motion), space: &Workspace) {
         for (node, first, own) in &self.0 {
             let of_axis = |i: usize| {
                 let axis = first + i;
                 let velocity = motion.arrival(formula, axis, h, space.w[axis]).0;
                 let inertial = motion.mass[axis] * (velocity - motion.v[axis]) / h + motion.damping[axis] * velocity;
+                let inertial = if formula.is_of_rest() { 0.0 } else { inertial };
                 if own[i] { space.net[axis] + inertial } else { 0.0 }
             };
             note_held(world, node, DVec3::from_array([0, 1, 2].map(of_axis)));

@@ -245,13 +245,14 @@ impl Statics {
         found?;
         let Some(rest) = rest else { return Ok(Balance::NotFound) };
         let Iterations { settings, motion, space, .. } = &mut *iterations;
-        grasped.note(trial.world, (&settings.formula, 1.0, motion), space);
-        let Workspace { w, net, step, steps, acceleration, .. } = space;
+        let Workspace { w, net, steps, .. } = &mut *space;
         match steps_to(&settings.formula, 1.0, motion, w, steps, &trial) {
             Some(steps) => trial.noted_forces(w, Some(steps), net)?,
             None => trial.forces(w, None, net)?,
         };
+        grasped.note(trial.world, (&settings.formula, 1.0, motion), space);
         grasped.load(trial.world);
+        let Workspace { w, step, acceleration, .. } = space;
         step.fill(0.0);
         acceleration.fill(0.0);
         axes.arrive(trial.world, w, step, acceleration);
