@@ -61,9 +61,9 @@ pub use scene::SceneFile;
 pub use simulation::explain;
 pub use simulation::{
     Advanced, BackendChoice, ColumnView, Ended, Equilibrium, FieldName, GpuColumn, Grab, GrabId, Grip, ImplicitSteps,
-    InputChange, InputRecording, InputUse, InputValue, Inversions, Mode, Names, NodeSet, NodeState, Options, Pick,
-    PortUse, PoseChange, Preload, RealTime, Simulation, Stability, StepHistory, Summary, SurfaceContactUse, SystemTime,
-    Unloaded, Unloading, UnloadingStep, unload,
+    InputChange, InputRecording, InputUse, InputValue, Inversions, Mode, Names, NodeSet, NodeState, Options, PathPoint,
+    Pick, PortUse, PoseChange, Preload, RealTime, Simulation, Stability, StepHistory, Summary, SurfaceContactUse,
+    SystemTime, Unloaded, Unloading, UnloadingStep, unload,
 };
 pub use snapshot::Snapshot;
 

@@ -115,12 +115,13 @@ fn step<T: Scalar>(
             breaks(&mut state, TIE_NUMBERS * tie.place, WENT, clock);
         }
     }
-    match &clock.springs {
-        Some(springs) => work.press(springs),
+    // pseudo-steps to rest hold what is tied as explicit steps do
+    match clock.springs.filter(|springs| springs.forces != SpringForces::Stepped) {
+        Some(springs) => work.press(&springs),
         None => work.set.solve(glue.sweeps),
     }
     // forces that are only tried leave everything as it is
-    let noted = clock.springs.is_none_or(|springs| springs.forces == SpringForces::Noted);
+    let noted = clock.springs.is_none_or(|springs| springs.forces.are_noted());
     let counts_work = clock.relaxation.is_none().then_some(coefficients.work_factor);
     work.forces.fill(DVec3::ZERO);
     for (number, tie) in glue.ties.iter().enumerate().filter(|(number, _)| work.set.ties[*number].holds) {

@@ -41,7 +41,7 @@ const WITHOUT: f64 = 2.0;
 
 /// What a step needs.
 pub struct GraspStep {
-    /// Whether steps are implicit, which hold the axes of nodes.
+    /// Whether a solver holds the axes of nodes.
     solved: bool,
     coefficients: IntegrationCoefficients<f64>,
     /// Whether work is counted: not on the way to rest.
@@ -81,7 +81,7 @@ impl NodeSystem for Grasps {
             *tool = ToolInStep { closed: values[grasp.closed][1] > 0.0, pose, change };
         }
         GraspStep {
-            solved: before.clock.springs.is_some(),
+            solved: before.clock.springs.is_some_and(|springs| springs.forces != SpringForces::Stepped),
             coefficients: IntegrationCoefficients::of(before.clock),
             counts_work: before.clock.relaxation.is_none(),
             tools,

@@ -28,6 +28,8 @@ pub(super) struct NodeSlices<'a, T> {
     pub rest: &'a [DVec3],
     /// Mass that is slow to move (kg).
     pub mass: &'a [T],
+    /// Mass that weighs (kg).
+    pub weighs: &'a [T],
     pub damping: Option<&'a [T]>,
     pub axes: &'a [u32],
     pub internal: &'a [T],
@@ -43,6 +45,7 @@ impl<'a, T: Scalar> NodeSlices<'a, T> {
         Self {
             rest: &columns.rest.0,
             mass: mass.slice(),
+            weighs: columns.mass.slice(),
             damping: columns.damping.map(|damping| damping.slice()),
             axes: &columns.axes.0,
             internal: columns.internal.slice(),

@@ -274,7 +274,9 @@ fn surface_contact(
 ) -> Result<(), Error> {
     let contacts = &mut *contacts;
     match clock.springs.map(|springs| springs.forces) {
-        None | Some(SpringForces::Sought) => survey::follow(contacts, &mut bodies, &authorings, &blocks),
+        None | Some(SpringForces::Sought | SpringForces::Stepped) => {
+            survey::follow(contacts, &mut bodies, &authorings, &blocks)
+        }
         Some(SpringForces::Tried | SpringForces::Noted) => {}
         Some(SpringForces::Omitted) => return Ok(()),
     }
@@ -292,10 +294,14 @@ fn step<T: Scalar>(
     bodies: &mut Query<(Entity, MeetingColumns)>,
 ) -> Result<(), Error> {
     match &of.0.springs {
-        Some(springs) if springs.forces == SpringForces::Sought => {
+        Some(springs) if matches!(springs.forces, SpringForces::Sought | SpringForces::Stepped) => {
             contacts.surface.pairs.clear();
-            if let Some((true, mut bodies)) = search::<T>(contacts, of, bodies)? {
+            let Some((is_near, mut bodies)) = search::<T>(contacts, of, bodies)? else { return Ok(()) };
+            if is_near {
                 solved::pair(contacts, of.0, &mut bodies);
+            }
+            if springs.forces == SpringForces::Stepped {
+                solved::press(contacts, (of.0, springs), &mut bodies);
             }
         }
         // before the first step nobody has looked

@@ -65,7 +65,7 @@ fn suture_tension(
         columns.sutured.forces.fill(DVec3::ZERO);
     }
     // of those that are only tried the solver knows, and everything stays as it is
-    let noted = clock.springs.is_none_or(|springs| springs.forces == SpringForces::Noted);
+    let noted = clock.springs.is_none_or(|springs| springs.forces.are_noted());
     for suture in sutures.all.iter().filter(|_| noted) {
         let [first, second] = &suture.ends;
         let at = SUTURE_NUMBERS * suture.place;

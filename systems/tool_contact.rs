@@ -111,7 +111,7 @@ impl NodeSystem for ToolContacts {
         for ((&row, values), listed) in self.rows[own.clone()].iter().zip(kept).zip(own) {
             let (row, mask) = (row as usize - nodes.first, self.masks[listed] & self.all());
             match &step.springs {
-                Some(springs) if springs.forces == SpringForces::Noted => {
+                Some(springs) if springs.forces.are_noted() => {
                     self.press((step, springs), (row, mask), nodes, values);
                 }
                 // the solver finds them apart

@@ -7,7 +7,7 @@ use crate::components::*;
 use crate::elements::Stiffness;
 use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
-use crate::scene::schema::{Contact, ContactLaw, Curve, Select, Tool, ToolMesh, ToolPlace};
+use crate::scene::schema::{Contact, ContactLaw, Curve, Scene, Select, Tool, ToolMesh, ToolPlace};
 use crate::tools::{DistanceGrid, Geometry, Solid, Triangles};
 use bevy_ecs::prelude::*;
 use glam::{DQuat, DVec3};
@@ -62,7 +62,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             rows.into_iter().for_each(|row| *marks.entry(row).or_default() |= bit);
             let signal = Signal::Pose { motion: motion(found), reference };
             let signal = world.resource_mut::<Signals>().add(signal);
-            let (friction, spring) = (contact.friction(), spring_of(contact.law()));
+            let (friction, spring) = (contact.friction(), spring_of(contact, scene));
             let (tool, geometry) = (tool.clone(), geometry.clone());
             let swept = if *swept { sweeps_beyond(&geometry, edge) } else { 0.0 };
             tools.push(ToolContact { tool, geometry, signal, friction, spring, swept });
@@ -90,10 +90,11 @@ fn sweeps_beyond(geometry: &Geometry, edge: f64) -> f64 {
     geometry.smallest_radius().map_or(f64::MAX, |radius| (SAFELY * radius).max(1e-6 * edge))
 }
 
-/// The spring of a law of contact, if it is one.
-pub(super) fn spring_of(law: ContactLaw) -> Option<ContactSpring> {
-    match law {
+/// The spring of a contact, if its law is one. At rest nothing damps.
+pub(super) fn spring_of(contact: &Contact, scene: &Scene) -> Option<ContactSpring> {
+    match contact.law() {
         ContactLaw::Kinematic => None,
+        ContactLaw::Penalty { share, .. } if scene.is_static() => Some(ContactSpring { share, damping: 0.0 }),
         ContactLaw::Penalty { share, damping } => Some(ContactSpring { share, damping }),
     }
 }

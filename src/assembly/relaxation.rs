@@ -7,6 +7,7 @@ use crate::components::*;
 use crate::elements::{Stiffness, mass_shares, node_count};
 use crate::evaluation::rest_volume;
 use crate::math::lane_place;
+use crate::systems::SurfaceContacts;
 use bevy_ecs::prelude::*;
 
 /// Loads grow over at least so many pseudo-steps.
@@ -46,8 +47,41 @@ pub(super) fn insert_fictitious_masses(assembly: &Assembly<'_>, world: &mut Worl
                 mass[row as usize] += 0.25 * stiffness * time_step * time_step;
             }
         }
+        of_springs(world, parts.entity, &mut mass);
         let mass = Reals::from_f64(assembly.precision, mass.into_iter());
         world.entity_mut(parts.entity).insert(FictitiousMass(mass));
+    }
+}
+
+/// Facets around a node of a surface of triangles, about; of quadrilaterals they are four.
+const FACETS: f64 = 6.0;
+
+/// Adds what springs of contact at a body's nodes are stable with (kg). One of a tool acts on its node alone. One
+/// between surfaces moves a point of weights w, and (Σ w x)² ≤ Σ|w| Σ|w| x², with Σ|w| = 2: each node bears twice its
+/// own spring, and about twice that of the heaviest point that may meet it. Points of faces share the nodes of their
+/// facets: those of each facet around a node make one spring of it.
+fn of_springs(world: &World, body: Entity, inertia: &mut [f64]) {
+    let clock = world.resource::<Clock>();
+    let (Some(springs), Some(mass)) = (clock.springs, world.get::<Mass>(body)) else { return };
+    let of_share = |share: f64, mass: f64| 0.25 * share * mass * (clock.time_step / springs.step).powi(2);
+    if let Some(contacts) = world.get::<ToolContacts>(body) {
+        for (&row, &mask) in contacts.rows.iter().zip(&contacts.masks) {
+            let of_node = contacts.tools.iter().enumerate().filter(|(tool, _)| mask >> tool & 1 == 1);
+            let share: f64 = of_node.filter_map(|(_, tool)| tool.spring).map(|spring| spring.share).sum();
+            inertia[row as usize] += of_share(share, mass.get(row as usize));
+        }
+    }
+    let Some(contacts) = world.get_resource::<SurfaceContacts>() else { return };
+    let (Some(rows), Some(share)) = (world.get::<SurfaceRows>(body), contacts.largest_share(body)) else { return };
+    let of_body = |body: &Entity| {
+        let (Some(rows), Some(mass)) = (world.get::<SurfaceRows>(*body), world.get::<Mass>(*body)) else { return 0.0 };
+        rows.0.iter().map(|&row| mass.get(row as usize)).fold(0.0, f64::max)
+    };
+    let heaviest = contacts.bodies.iter().map(of_body).fold(0.0, f64::max);
+    let has_face_points = (0..contacts.bodies.len()).any(|body| contacts.has_face_points(body));
+    let points = if has_face_points { FACETS } else { 1.0 };
+    for &row in &rows.0 {
+        inertia[row as usize] += 2.0 * points * of_share(share, mass.get(row as usize) + heaviest);
     }
 }
 

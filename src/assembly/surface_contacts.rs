@@ -32,7 +32,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World) {
         contacts.sweeps = contacts.sweeps.max(*sweeps as usize);
         if let [Some(a), Some(b)] = pair.map(place) {
             let faces = *points == Points::Faces;
-            let (friction, spring) = (contact.friction(), spring_of(contact.law()));
+            let (friction, spring) = (contact.friction(), spring_of(contact, scene));
             contacts.meet([a, b], Meeting { friction, thickness: *thickness, faces, edges: *edges, spring });
         }
     }

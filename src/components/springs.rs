@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
-/// Springs of contact whose forces are those at the end of the step that is solved for.
+/// Springs of contact whose forces are those at the end of the step that is solved for, or at rest.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
 pub struct SolvedSprings {
     /// The step (s) over the square of which a share of the mass is a stiffness: the stable one of the stiffest
@@ -28,6 +28,15 @@ pub enum SpringForces {
     Omitted,
     /// They are loads, and what touches carries on to the next step is noted.
     Noted,
+    /// All of that in a pseudo-step to rest: who may touch what is sought, and their forces are loads and noted.
+    Stepped,
+}
+
+impl SpringForces {
+    /// Whether they are loads, and what touches is noted.
+    pub fn are_noted(self) -> bool {
+        matches!(self, SpringForces::Noted | SpringForces::Stepped)
+    }
 }
 
 /// How a spring presses on a mass, in place of [`ContactSpring::gap`].

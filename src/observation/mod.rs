@@ -11,6 +11,7 @@ mod free_tools;
 mod grasps;
 mod guards;
 mod overlaps;
+mod path;
 mod probes;
 mod rounding;
 mod sample;
@@ -25,6 +26,7 @@ pub use energies::{energies, energy_header, mass, removed_momentum};
 pub use fields::{BodyFields, body_fields, internal_forces};
 pub use frame::{WrittenFields, field_of, write as write_fields, write_whole};
 pub use guards::{GuardSettings, begin as begin_to_guard, held_for_long};
+pub use path::{PATH, columns_of_probe};
 pub use probes::{header, observe_probe, volume_left};
 pub use rounding::{Rounding, shortest_edge};
 pub use sample::{GuardKernels, Sample, sample};
@@ -78,6 +80,8 @@ pub struct Observer {
     /// Of a static analysis, where steps are taken back and time stands still: only the start, the last step, and what
     /// [`observe_on_the_way`](Observer::observe_on_the_way) is called for.
     pub to_rest: bool,
+    /// Whether that follows a path of equilibria.
+    pub follows_path: bool,
     on_the_way: f64,
     files: Option<Files>,
     probes: Vec<ProbeTrack>,
@@ -103,6 +107,7 @@ struct Files {
     energies: Option<Table>,
     probes: BTreeMap<String, Table>,
     convergence: Option<Table>,
+    path: Option<Table>,
     /// Of bodies with a skin.
     skins: Vec<(Entity, Series)>,
 }
@@ -181,6 +186,10 @@ impl Observer {
             None => None,
             Some(_) => Some(Table::create(&folder.claim("convergence.csv")?, &CONVERGENCE)?),
         };
+        let path = match self.follows_path {
+            false => None,
+            true => Some(Table::create(&folder.claim("path.csv")?, &self.path_header(world))?),
+        };
         let mut skins = Vec::new();
         for (body, name) in skins::with_skins(world) {
             let name = format!("skin_{name}");
@@ -188,7 +197,7 @@ impl Observer {
             skins.push((body, Series::named(folder.path(), &name)?));
         }
         let (folder, _lock) = (folder.path().to_path_buf(), folder.lock());
-        self.files = Some(Files { folder, _lock, series, energies, probes, convergence, skins });
+        self.files = Some(Files { folder, _lock, series, energies, probes, convergence, path, skins });
         Ok(())
     }
 

@@ -49,6 +49,8 @@ pub const FRAMES: u64 = 1_000_000;
 pub const ROWS: u64 = 100_000_000;
 /// Pseudo-steps of a static analysis.
 pub const PSEUDO_STEPS: u64 = 1_000_000_000;
+/// Points of a path of equilibria.
+pub const PATH_POINTS: u32 = 100_000;
 /// Bytes of a law or system of one's own.
 pub const LAW_BYTES: u64 = 1 << 20;
 /// Bytes of a formula of an energy.

@@ -185,6 +185,7 @@ fn of_the_cpu(scene: &Scene, schedule: &[Scheduled<'_>]) -> Option<[String; 2]> 
     let (who, instead) = match (scene.is_implicit(), scene.is_static_by_newton()) {
         (true, _) => ("implicit steps", "`solver: Explicit`"),
         (_, true) => ("Newton's iterations", "`method: Relaxation`"),
+        _ if scene.rests_on_springs() => ("rest with springs of contact", "the kinematic law"),
         _ => return None,
     };
     let told = |what: &str, why: &str| [format!("`{what}` {why}"), instead.to_string()];
@@ -195,6 +196,9 @@ fn of_the_cpu(scene: &Scene, schedule: &[Scheduled<'_>]) -> Option<[String; 2]> 
     ];
     if let Some((list, _)) = lists.into_iter().find(|(_, is_empty)| !is_empty) {
         return Some(told(list, &format!("take part in {who} on the CPU only")));
+    }
+    if scene.follows_path() {
+        return Some(told("arc", "is followed on the CPU only"));
     }
     let on_host = schedule.iter().find(|entry| !entry.on_device && !entry.system.observes)?;
     Some(told(&on_host.system.name, &format!("runs on the host, where {who} on a GPU do not call it")))
@@ -317,6 +321,7 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
         removal: world.query::<&Alive>().iter(world).next().is_some(),
     };
     observer.to_rest = clock.relaxation.is_some();
+    observer.follows_path = scene.scene.follows_path();
     observer.last_step = if clock.relaxation.is_some() { u64::MAX } else { steps };
     observer.track_probes(world);
     observer

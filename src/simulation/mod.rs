@@ -69,7 +69,7 @@ pub use contact_use::SurfaceContactUse;
 pub use follow::StepHistory;
 pub use gpu_column::GpuColumn;
 pub use grab::{Grab, GrabId, Grip};
-pub use implicit::ImplicitSteps;
+pub use implicit::{ImplicitSteps, PathPoint};
 pub use inputs::{InputUse, InputValue};
 pub use modes::Mode;
 pub use names::{FieldName, Names};

@@ -2,7 +2,7 @@
 
 use crate::observation;
 use crate::output::nodes;
-use crate::scene::schema::{OutputField, Scene};
+use crate::scene::schema::{OutputField, Probe, Scene};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -56,6 +56,12 @@ impl Names {
         }
         if scene.is_static() {
             columns.insert("convergence.csv".into(), with_units(&observation::CONVERGENCE));
+        }
+        if scene.follows_path() {
+            let of_probe = |(name, probe): (&String, &Probe)| observation::columns_of_probe(name, &probe.what);
+            let of_probes: Vec<String> = scene.probes.iter().flat_map(of_probe).collect();
+            let all = observation::PATH.iter().copied().chain(of_probes.iter().map(String::as_str));
+            columns.insert("path.csv".into(), with_units(&all.collect::<Vec<_>>()));
         }
         let of_nodes: Vec<(String, String)> =
             nodes::COLUMNS.iter().map(|(name, unit)| (name.to_string(), unit.to_string())).collect();

@@ -30,6 +30,10 @@ pub struct Preload {
 /// What is taken over from the static analysis; forces for those who observe the start.
 const TAKEN: [&str; 4] = [Displacement::NAME, DisplacementCompensation::NAME, InternalForce::NAME, ExternalForce::NAME];
 
+/// The same where bodies rest on springs: who touches, how deep, and what friction holds.
+const TOUCH: [&str; 6] =
+    [ToolTouch::NAME, ContactForce::NAME, SurfaceTouch::NAME, FaceTouch::NAME, TieState::NAME, SutureState::NAME];
+
 /// What the start of a motion reads, and what taking over writes.
 const WRITTEN: [&str; 5] =
     [Displacement::NAME, DisplacementCompensation::NAME, InternalForce::NAME, ExternalForce::NAME, ViscousMemory::NAME];
@@ -124,6 +128,7 @@ impl Simulation {
             take::<DisplacementCompensation>(&mut self.world, body, other, from, |column| &mut column.0);
             take::<InternalForce>(&mut self.world, body, other, from, |column| &mut column.0);
             take::<ExternalForce>(&mut self.world, body, other, from, |column| &mut column.0);
+            take_touch(&mut self.world, body, other, from);
             if let Some(mut lost) = self.world.get_mut::<DisplacementCompensation>(body) {
                 // at rest the step is exact
                 (lost.len() / 2..lost.len()).for_each(|i| lost.set(i, 0.0));
@@ -143,6 +148,19 @@ impl Simulation {
 fn bodies(world: &mut World) -> Vec<(Entity, Label)> {
     let mut query = world.query_filtered::<(Entity, &Label), With<Authoring>>();
     query.iter(world).map(|(entity, label)| (entity, label.clone())).collect()
+}
+
+/// Takes over how a body touches others at rest, if that is by springs: the kinematic law begins anew.
+fn take_touch(world: &mut World, body: Entity, other: &World, from: Entity) {
+    let rows = |world: &World, entity| world.get::<Authoring>(entity).map(|authoring| authoring.node_rows.clone());
+    if other.resource::<Clock>().springs.is_none() || rows(world, body) != rows(other, from) {
+        return;
+    }
+    for column in all_columns().into_iter().filter(|column| TOUCH.contains(&column.name)) {
+        if let Some(bytes) = (column.bytes)(other, from) {
+            (column.write)(world, body, bytes);
+        }
+    }
 }
 
 /// Takes over a column of vectors, of which a node may have several, node by node.

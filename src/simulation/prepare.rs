@@ -56,7 +56,7 @@ pub(super) fn prepare<'a>(
     outputs::check(scene, &clock, steps, diagnostics);
     outputs::check_curves(scene, &clock, diagnostics);
     plausible::check(&assembly, world, diagnostics);
-    if !clock.velocities_at_ends {
+    if !clock.velocities_at_ends && clock.relaxation.is_none() {
         contact_springs::check(&scene.scene, &stability, diagnostics);
     }
     world.insert_resource(clock);
@@ -102,7 +102,10 @@ fn clock(
             damping: 0.0,
             force_scale: 1.0,
         };
-        let clock = Clock { relaxation: Some(relaxation), ..Clock::with_step(scene.scene.duration * ramp_rate) };
+        let springs = SolvedSprings { step: bound.time_step, forces: SpringForces::Stepped };
+        let springs = scene.scene.rests_on_springs().then_some(springs);
+        let clock =
+            Clock { relaxation: Some(relaxation), springs, ..Clock::with_step(scene.scene.duration * ramp_rate) };
         return Some((clock, Stability::of_rest(bound), max_steps));
     }
     if let Solver::Implicit { step, .. } = scene.scene.solver {

@@ -9,7 +9,7 @@ use super::ScheduledPass;
 use super::Simulation;
 use super::explain::SolverInUse;
 use super::frequency::largest_eigenvalue;
-use super::implicit::{Attempt, ImplicitSteps, OfForces, Rest, Statics};
+use super::implicit::{Attempt, ImplicitSteps, OfForces, PathPoint, Rest, Statics};
 use super::residual::{Motion, Residual, State};
 use super::stretch::least_stretch;
 use crate::backend::device::{bring_to_host, send_to_device};
@@ -68,6 +68,9 @@ pub struct Equilibrium {
     pub unstable: bool,
     /// What loads move and nothing holds, in words, where that is why there is none.
     pub not_held: Vec<String>,
+    /// The path of equilibria that led there, where one was followed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub path: Vec<PathPoint>,
 }
 
 /// A static analysis at work.
@@ -116,7 +119,10 @@ impl Relaxing {
         let Analysis::Static(search) = scene.analysis else { return None };
         // in units of the bound of the elements, which the fictitious masses make the same for all
         let half = 0.5 * world.resource::<Clock>().time_step;
-        let highest = largest_eigenvalue(world, OF_RELAXATION).map_or(1.0, |found| found.at_least * half * half);
+        let springs = world.resource::<Clock>().springs.is_some();
+        // springs of contact are as stiff as the bound that their masses make, and no part of that eigenvalue
+        let found = if springs { None } else { largest_eigenvalue(world, OF_RELAXATION) };
+        let highest = found.map_or(1.0, |found| found.at_least * half * half);
         let highest = if highest > 0.0 && highest < 1.0 { highest } else { 1.0 };
         let load_steps = world.resource_mut::<Clock>().relaxation.as_mut().map_or(0, |relaxation| {
             relaxation.force_scale = scene.integration.safety.powi(2) / highest;
@@ -127,7 +133,7 @@ impl Relaxing {
         let mut new = Self::new(&search, reachable, load_steps, world);
         if search.method == SearchMethod::Newton {
             let reachable = if precision == Precision::F64 { 1e-10 } else { 1e-5 };
-            let statics = Statics::new(search.tolerance.unwrap_or(reachable), world);
+            let statics = Statics::new(search.tolerance.unwrap_or(reachable), search.arc, world);
             new.newton = Some(Box::new(ByNewton { statics, below: f64::INFINITY }));
             // loads and motions have begun then, and are nothing yet
             new.next_check = 1;
@@ -198,7 +204,8 @@ impl Relaxing {
         let Some(mut relaxation) = clock.relaxation else { return Ok(()) };
         if let Some(newton) = self.newton.as_mut().filter(|newton| newton.below.is_infinite()) {
             self.next_check = CHECK_STEPS.min(self.most_steps);
-            if world.resource::<Signals>().largest_turn(relaxation.end) > FAR_TURN {
+            let turns = world.resource::<Signals>().largest_turn(relaxation.end);
+            if turns > FAR_TURN && !newton.statics.follows_path() {
                 newton.below = BEGIN_AGAIN;
                 return Ok(());
             }
@@ -294,13 +301,16 @@ impl Relaxing {
         clock.step += rest.iterations;
         let step = clock.step;
         if let Some(relaxation) = &mut clock.relaxation {
-            relaxation.since = (step, 1.0);
+            let factor = rest.path.last().map_or(1.0, |point| point.load_factor);
+            relaxation.since = (step, factor.clamp(0.0, 1.0));
+            relaxation.ramp_rate = 0.0;
         }
         let residual = Residual::of(&State::of(world), world);
         let motion = Motion { moved: rest.remaining, displaced: rest.displaced, ..Motion::default() };
         self.judge(&motion, &residual, 1, 1.0, world);
         let found = &mut self.equilibrium;
         (found.reached, found.newton_iterations, found.unstable) = (true, rest.iterations, rest.unstable);
+        found.path.clone_from(&rest.path);
         if let Some(newton) = &self.newton {
             found.tolerance = newton.statics.tolerance();
         }

@@ -50,13 +50,25 @@ pub(super) struct Solved {
     slopes: [DMat3; 2],
 }
 
-/// Looks which points may touch what in the step that begins, where the clock says that this is wanted.
-pub(crate) fn seek(world: &mut World) -> Result<(), Error> {
+impl SurfaceContacts {
+    /// The largest share of a spring between a body and what it meets, if there is one.
+    pub(crate) fn largest_share(&self, body: Entity) -> Option<f64> {
+        let number = self.bodies.iter().position(|&other| other == body)?;
+        let count = self.bodies.len();
+        let of_body = self.meetings[number * count..(number + 1) * count].iter().flatten();
+        of_body.filter_map(|meeting| meeting.spring).map(|spring| spring.share).reduce(f64::max)
+    }
+}
+
+/// Looks which points may touch what in the step that begins, where the clock says that this is wanted. Whether there
+/// are bodies that may meet.
+pub(crate) fn seek(world: &mut World) -> Result<bool, Error> {
     if !world.contains_resource::<SurfaceContacts>() {
-        return Ok(());
+        return Ok(false);
     }
     let ran = world.run_system_once(super::surface_contact);
-    ran.unwrap_or_else(|error| Err(Error::Options(format!("surfaces cannot be looked at: {error}"))))
+    ran.unwrap_or_else(|error| Err(Error::Options(format!("surfaces cannot be looked at: {error}"))))?;
+    Ok(true)
 }
 
 /// The springs that the system has found where nodes were tried. `first_axis` is that of a body.
@@ -97,6 +109,8 @@ pub(super) fn pair<T: Scalar>(contacts: &mut SurfaceContacts, clock: &Clock, bod
             let (gap, kept) = (contacts.gap(point, facing), contacts.kept(number));
             let allowed = match (first, &clock.springs) {
                 (true, _) => allowed(bodies[kept.body].kept_mut(kept), gap, &in_step),
+                // at rest all presses, however it got there
+                (false, _) if in_step.settling == f64::INFINITY => 0.0,
                 (false, Some(springs)) => borne(contacts, (point, facing.normal, gap), (&meeting, springs), bodies),
                 (false, None) => 0.0,
             };
@@ -139,7 +153,7 @@ fn borne<T: Scalar>(
     for (node, weight) in point.parts() {
         let (body, row) = contacts.surface.nodes[node as usize];
         let of_body = &bodies[body as usize];
-        mass += weight * of_body.mass[row as usize].to_f64();
+        mass += weight * of_body.weighs[row as usize].to_f64();
         force += normal.dot(vector_at(of_body.force, 3 * row as usize));
     }
     let stiffness = spring.press(springs, mass, 0.0, [0.0, springs.step]).stiffness;
@@ -171,7 +185,7 @@ pub(super) fn press<T: Scalar>(
         }
         add(contacts, &mut gathered, (pair, gap), (&in_step, springs), bodies, &mut solved);
     }
-    if springs.forces == SpringForces::Noted {
+    if springs.forces.are_noted() {
         let mut forces = std::mem::take(&mut contacts.surface.forces);
         forces.clear();
         forces.resize(gathered.acted_on.len(), DVec3::ZERO);
@@ -182,7 +196,7 @@ pub(super) fn press<T: Scalar>(
         contacts.surface.forces = forces;
         release(&mut contacts.surface, bodies);
         forget(contacts, &gathered.facing, bodies);
-        note(contacts, &gathered, &pairs, &solved, bodies);
+        note(contacts, (&gathered, clock.relaxation.is_none()), &pairs, &solved, bodies);
         push(contacts, &gathered.acted_on, bodies);
     }
     gathered.acted_on.iter().for_each(|&node| gathered.slots[node as usize] = u32::MAX);
@@ -215,7 +229,7 @@ fn add<T: Scalar>(
         contact.add(slot, weight);
         if weight > 0.0 {
             let (body, row) = contacts.surface.nodes[node as usize];
-            mass += weight * bodies[body as usize].mass[row as usize].to_f64();
+            mass += weight * bodies[body as usize].weighs[row as usize].to_f64();
         }
     }
     let relative = contact.relative(&gathered.set.earlier);
@@ -233,10 +247,10 @@ fn add<T: Scalar>(
 }
 
 /// Notes what points do at the end of a step. Forces work with the mean of those at both ends, as all in implicit
-/// steps.
+/// steps; on the way to rest work is not counted.
 fn note<T: Scalar>(
     contacts: &mut SurfaceContacts,
-    gathered: &Gathered,
+    (gathered, counts_work): (&Gathered, bool),
     pairs: &[Pair],
     all: &[Solved],
     bodies: &mut [BodySlices<'_, T>],
@@ -258,10 +272,12 @@ fn note<T: Scalar>(
             set_vector(touch, 0, contact.slip);
             touch[4] = T::from_f64(if contact.slides { SLIDES } else { STICKS });
         }
-        let mean = 0.5 * (contact.force() + contact.normal * *was + *rubbed);
-        let along = if contact.slides { contact.along(relative).length() } else { 0.0 };
-        touch[6] = T::from_f64(touch[6].to_f64() + along);
-        touch[7] = T::from_f64(touch[7].to_f64() - mean.dot(relative));
+        if counts_work {
+            let mean = 0.5 * (contact.force() + contact.normal * *was + *rubbed);
+            let along = if contact.slides { contact.along(relative).length() } else { 0.0 };
+            touch[6] = T::from_f64(touch[6].to_f64() + along);
+            touch[7] = T::from_f64(touch[7].to_f64() - mean.dot(relative));
+        }
         let deepest = &mut contacts.surface.figures.deepest;
         *deepest = deepest.max(-met.gap);
     }

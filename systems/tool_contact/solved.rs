@@ -94,7 +94,8 @@ impl ToolContacts {
             place,
             step: DVec3::from_array([0, 1, 2].map(|i| nodes.step[3 * row + i].to_f64())),
             free: free_axes(nodes.axes[row]),
-            mass: nodes.inertia[row].to_f64(),
+            // at rest another one is slow to move
+            mass: nodes.mass[row].to_f64(),
         };
         for (tool, of_tool) in values.chunks_exact_mut(numbers).enumerate() {
             let force = DVec3::from_array([0, 1, 2].map(|i| of_tool[i].to_f64()));
@@ -108,7 +109,8 @@ impl ToolContacts {
                 nodes.add_load(row, press.force);
             }
             if press.is_some() || last.state != 0.0 {
-                note(of_tool, (&at, change.place(pose.inverse(place))), &last, press);
+                let tool_step = step.counts_work.then(|| change.place(pose.inverse(place)));
+                note(of_tool, (&at, tool_step), &last, press);
             }
         }
     }
@@ -146,21 +148,23 @@ impl ToolContacts {
     }
 }
 
-/// Notes what a tool does at the end of a step in which it goes so far (m). Forces work with the mean of those at both
-/// ends, as all in implicit steps.
-fn note<T: SimdScalar>(of_tool: &mut [T], (at, tool_step): (&At, DVec3), last: &Last, press: Option<Press>) {
+/// Notes what a tool does at the end of a step in which it goes so far (m); on the way to rest work is not counted.
+/// Forces work with the mean of those at both ends, as all in implicit steps.
+fn note<T: SimdScalar>(of_tool: &mut [T], (at, tool_step): (&At, Option<DVec3>), last: &Last, press: Option<Press>) {
     let nothing = Press { force: DVec3::ZERO, slopes: [DMat3::ZERO; 2], state: 0.0, along: 0.0 };
     let Press { force, state, along, .. } = press.unwrap_or(nothing);
-    let mean = 0.5 * (last.force + force);
-    let work = mean.dot(tool_step);
     for i in 0..3 {
         of_tool[i] = T::from_f64(force[i]);
     }
     of_tool[3] = T::from_f64(state);
-    let mut add = |number: usize, part: f64| of_tool[number] += T::from_f64(part);
-    add(4, if state == SLIDES { along } else { 0.0 });
-    add(5, work);
-    add(6, work - (mean * at.free).dot(at.step));
+    if let Some(tool_step) = tool_step {
+        let mean = 0.5 * (last.force + force);
+        let work = mean.dot(tool_step);
+        let mut add = |number: usize, part: f64| of_tool[number] += T::from_f64(part);
+        add(4, if state == SLIDES { along } else { 0.0 });
+        add(5, work);
+        add(6, work - (mean * at.free).dot(at.step));
+    }
     for (i, felt) in of_tool[TOUCH_NUMBERS..].iter_mut().enumerate() {
         *felt += T::from_f64(force[i]);
     }

@@ -20,6 +20,7 @@ mod implicit;
 mod implicit_ties;
 mod ironing;
 mod lost_surfaces;
+mod rest;
 mod surfaces;
 mod sutures;
 mod sweeps;

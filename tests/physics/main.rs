@@ -3,6 +3,7 @@
 //! E = 3000 Pa, ν = .45, ρ = 1000 kg/m³ (so μ = 1034.4828, λ = 9310.3448, κ = 10000 Pa) unless a file says otherwise.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod arc_length;
 mod auto_bound;
 mod bars;
 mod changed_scene;

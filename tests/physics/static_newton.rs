@@ -218,7 +218,10 @@ fn what_newton_cannot_do_is_refused_by_name() {
         ("analysis: Static(method: Guess)", "Guess"),
         ("analysis: Static(how: Newton)", "how"),
         ("start: Equilibrium(at: 1)", "a motion begins at t = 0"),
-        (&format!("analysis: Static(method: Newton), {tool}"), "Newton's iterations cannot take part in contact"),
+        (
+            &format!("analysis: Static(method: Newton), {tool}"),
+            "Newton's iterations cannot take part in the kinematic law of contact",
+        ),
         (&format!("start: Equilibrium(method: Newton), {tool}"), "`method: Relaxation` in `start`"),
     ] {
         let told = refused(more);

@@ -78,6 +78,29 @@ fn springs_are_as_stiff_as_the_step_allows() {
     }
 }
 
+#[test]
+fn at_rest_all_contacts_are_springs_or_none_is() {
+    let told_of = |analysis: &str, law: &str| {
+        let text = format!(
+            "(duration: 0.1, {analysis} bodies: {{\"a\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2)), material: \"m\")}},
+materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}}, tools: {{\"t\": (shape: Plane()), \"u\": (shape: Plane(), at: (0, 0, -0.1))}},
+contacts: [Tool(tool: \"t\", law: Penalty(share: 20)),
+    Tool(tool: \"u\"{law})])"
+        );
+        told_of(&text, std::path::Path::new("."))
+    };
+    for analysis in ["analysis: Static(),", "analysis: Static(method: Newton),"] {
+        assert_eq!(told_of(analysis, ", law: Penalty(share: 1)"), "", "{analysis}");
+    }
+    let found = told_of("analysis: Static(),", "");
+    assert!(
+        found.contains("error: at rest all contacts are springs, or none is | write `law: Penalty(share: 1)`"),
+        "{found}"
+    );
+    let found = told_of("analysis: Static(method: Newton),", "");
+    assert!(found.contains("error: Newton's iterations cannot take part in the kinematic law of contact"), "{found}");
+}
+
 /// What is said of copies of a cube of 10 cm with contact with itself, each so far from the last.
 fn told_of_copies(contact: &str, copies: u32, apart: &str) -> String {
     let text = format!(

@@ -124,6 +124,7 @@ fn outputs(simulation: &Simulation, steps: u64) -> Vec<String> {
         _ => files.extend(scene.bodies.keys().map(|name| format!("nodes_{name}.csv"))),
     }
     files.extend(scene.is_static().then(|| "convergence.csv".to_string()));
+    files.extend(scene.follows_path().then(|| "path.csv".to_string()));
     files.extend(["summary.json".into(), "scene.ron".into()]);
     files
 }

@@ -78,6 +78,14 @@ fn equilibrium(found: &Equilibrium, heading: &str, page: &mut Page) {
             found.tolerance
         ),
     );
+    if let Some(last) = found.path.last() {
+        let unstable = found.path.iter().filter(|point| point.unstable).count();
+        let points = counted(found.path.len() as u64, "point");
+        page.row(
+            "",
+            format!("a path of {points} to a load factor of {:.4}, {unstable} of them unstable", last.load_factor),
+        );
+    }
     let (body, node, force) = &found.worst;
     page.row("", format!("largest at node {node} of {body}: {}", quantity(*force, "N")));
     let taken_back = match found.setbacks {

@@ -40,11 +40,38 @@ pub struct EquilibriumSearch {
     pub load_steps: Option<u64>,
     /// The time whose loads and motions act (s); `duration` when left out, and 0 at the start of a motion.
     pub at: Option<f64>,
+    /// Newton's iterations go along the path of equilibria that leads there, through limit points.
+    pub arc: Option<ArcLength>,
 }
 
 impl Default for EquilibriumSearch {
     fn default() -> Self {
-        Self { method: SearchMethod::default(), tolerance: None, max_steps: 200_000, load_steps: None, at: None }
+        Self {
+            method: SearchMethod::default(),
+            tolerance: None,
+            max_steps: 200_000,
+            load_steps: None,
+            at: None,
+            arc: None,
+        }
+    }
+}
+
+/// How a path of equilibria is followed from no load to all of it, by arc length.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields, default)]
+pub struct ArcLength {
+    /// The share of all loads that the first step is to reach.
+    pub first: f64,
+    /// How far nodes may go in a step (m), root mean square; as far as iterations lead when left out.
+    pub longest: Option<f64>,
+    /// Points of the path at most, wherever it has led by then.
+    pub points: u32,
+}
+
+impl Default for ArcLength {
+    fn default() -> Self {
+        Self { first: 0.1, longest: None, points: 200 }
     }
 }
 

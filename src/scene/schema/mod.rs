@@ -23,7 +23,7 @@ pub use crate::mesh::ElementKind;
 pub use crate::tools::Shape;
 pub use accuracy::{Accuracy, AccuracyReference};
 pub use action::{Axis, Constraint, Curve, Removal, Threshold, When};
-pub use analysis::{Analysis, EquilibriumSearch, InitialState, SearchMethod};
+pub use analysis::{Analysis, ArcLength, EquilibriumSearch, InitialState, SearchMethod};
 pub use attachment::{Attachment, Point};
 pub use body::{Body, MeshSource, Region, SkinFile, SkinFormat, Start};
 pub use load::{Load, Share};

@@ -1,8 +1,8 @@
 //! The whole scene, its time step, its guards.
 
 use super::{
-    Accuracy, Analysis, Attachment, Body, Constraint, Contact, Curve, EquilibriumSearch, InitialState, Load, Material,
-    Output, OwnSystem, Part, Picture, Probe, Removal, SearchMethod, Solver, Suction, Tool, When,
+    Accuracy, Analysis, Attachment, Body, Constraint, Contact, ContactLaw, Curve, EquilibriumSearch, InitialState,
+    Load, Material, Output, OwnSystem, Part, Picture, Probe, Removal, SearchMethod, Solver, Suction, Tool, When,
 };
 use crate::scene::syntax::Path;
 use serde::{Deserialize, Serialize};
@@ -288,6 +288,18 @@ impl Scene {
     /// Whether the motion is none, and Newton's iterations seek equilibrium.
     pub fn is_static_by_newton(&self) -> bool {
         matches!(self.analysis, Analysis::Static(search) if search.method == SearchMethod::Newton)
+    }
+
+    /// Whether rest is sought along a path of equilibria.
+    pub fn follows_path(&self) -> bool {
+        matches!(self.analysis, Analysis::Static(EquilibriumSearch { arc: Some(_), .. }))
+    }
+
+    /// Whether contact at rest is that of springs: where Newton's iterations seek it, or one contact is a spring.
+    pub fn rests_on_springs(&self) -> bool {
+        let is_spring = |contact: &Contact| contact.law() != ContactLaw::Kinematic;
+        self.is_static()
+            && (self.contacts.iter().any(is_spring) || self.is_static_by_newton() && !self.attachments.is_empty())
     }
 
     /// Whether bodies may touch something, or be held by a tool, in a motion.

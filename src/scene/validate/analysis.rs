@@ -1,9 +1,10 @@
 //! Static analyses and motions that begin at equilibrium: their numbers, and what of a scene has no meaning at rest.
 
 use super::{Validator, scene, show};
-use crate::scene::limits::PSEUDO_STEPS;
+use crate::scene::limits::{PATH_POINTS, PSEUDO_STEPS};
 use crate::scene::schema::{
-    Analysis, Constraint, Contact, EquilibriumSearch, InitialState, Inversion, Load, Quantity, Scene, laws_that_recover,
+    Analysis, ArcLength, Constraint, Contact, EquilibriumSearch, InitialState, Inversion, Load, Quantity, Scene,
+    SearchMethod, laws_that_recover,
 };
 use crate::scene::syntax::Path;
 use glam::DVec3;
@@ -31,13 +32,47 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
                 .note(format!("allowed: Stop, and Recover for {}", laws_that_recover().join(", ")));
         }
     }
+    if search.arc.is_some() {
+        let touch = [("contacts", scene_.contacts.len()), ("attachments", scene_.attachments.len())];
+        for (list, _) in touch.into_iter().filter(|(_, count)| *count > 0) {
+            validator
+                .out
+                .error_at(scene(list).index(0), "a path by arc length takes no part in contact and attachments")
+                .note("leave `arc` out: what touches changes all at once along a path");
+        }
+    }
     meaningless(scene_, validator);
     held(scene_, &path, validator);
+}
+
+/// How a path is followed.
+fn arc(path: &Path, search: &EquilibriumSearch, validator: &mut Validator) {
+    let Some(ArcLength { first, longest, points }) = search.arc else { return };
+    let path = path.name("arc");
+    if search.method != SearchMethod::Newton {
+        validator
+            .out
+            .error_at(&path, "a path by arc length is one of Newton's iterations")
+            .note("write `method: Newton`, or leave `arc` out");
+    }
+    // what is no number is not within
+    if !(first > 0.0 && first <= 1.0) {
+        validator
+            .must(&path.name("first"), "above 0 and at most 1", show(first))
+            .note("it is the share of all loads that the first step is to reach; 0.1 when left out");
+    }
+    if let Some(longest) = longest {
+        validator.above_zero(&path.name("longest"), longest, "m");
+    }
+    if !(1..=PATH_POINTS).contains(&points) {
+        validator.must(&path.name("points"), &format!("from 1 to {PATH_POINTS}"), points);
+    }
 }
 
 /// How well equilibrium is sought, and how long.
 fn numbers(path: &Path, search: &EquilibriumSearch, validator: &mut Validator) {
     let EquilibriumSearch { tolerance, max_steps, load_steps, .. } = *search;
+    arc(path, search, validator);
     if let Some(tolerance) = tolerance
         && (tolerance <= 0.0 || tolerance >= 1.0)
     {
@@ -78,6 +113,12 @@ fn start(scene_: &Scene, validator: &mut Validator) {
             .out
             .error_at(path.name("at"), "a motion begins at t = 0")
             .note("`at` is for `analysis: Static(...)`; leave it out");
+    }
+    if search.arc.is_some() {
+        validator
+            .out
+            .error_at(path.name("arc"), "a motion begins at its loads as they stand, and at no point of a path")
+            .note("`arc` is for `analysis: Static(...)`; leave it out");
     }
     for (name, body) in &scene_.bodies {
         let body_path = scene("bodies").name(name);

@@ -1,22 +1,23 @@
 //! Implicit steps: their numbers, and what of a scene they cannot do.
 
 use super::{Validator, scene, show};
-use crate::scene::schema::{ContactLaw, ImplicitScheme, Scene, SearchMethod, Solver, WhenUnstable};
+use crate::scene::schema::{Contact, ContactLaw, ImplicitScheme, Scene, SearchMethod, Solver, WhenUnstable};
 
 pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
     if scene_.search().is_some_and(|search| search.method == SearchMethod::Newton) {
         let word = if scene_.is_static() { "analysis" } else { "start" };
         let instead = format!("`method: Relaxation` in `{word}`");
-        let lists = [
-            ("contacts", scene_.contacts.len(), "contact, which puts nodes where they may be from step to step"),
-            ("attachments", scene_.attachments.len(), "attachments, which break and hold from step to step"),
-        ];
-        for (list, _, what) in lists.into_iter().filter(|(_, count, _)| *count > 0) {
-            let message = format!("Newton's iterations cannot take part in {what}");
-            let note = format!("leave `{list}` out, or use {instead}");
-            validator.out.error_at(scene(list).index(0), message).note(note);
-        }
+        let message = "Newton's iterations cannot take part in the kinematic law of contact, which puts nodes where they \
+                       may be from step to step";
+        refuse_kinematic(scene_, message, &format!("use {instead}"), validator);
         refused(scene_, "Newton's iterations", &instead, validator);
+    }
+    let is_spring = |contact: &Contact| contact.law() != ContactLaw::Kinematic;
+    if scene_.search().is_some_and(|search| search.method == SearchMethod::Relaxation)
+        && scene_.contacts.iter().any(is_spring)
+    {
+        let message = "at rest all contacts are springs, or none is";
+        refuse_kinematic(scene_, message, "leave `law` out at the others", validator);
     }
     let Solver::Implicit { scheme, step, newton, tolerance, budget, .. } = scene_.solver else { return };
     let path = scene("solver");
@@ -55,14 +56,18 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
             .error_at(scene("integration").name("when_unstable"), "implicit steps are stable at any length")
             .note("leave it out: neither masses nor steps nor elements have to change");
     }
-    for (number, _) in scene_.contacts.iter().enumerate().filter(|(_, contact)| contact.law() == ContactLaw::Kinematic)
-    {
-        validator
-            .out
-            .error_at(scene("contacts").index(number), "the kinematic law corrects explicit steps, and there are none")
-            .note("write `law: Penalty(share: 1)`, a spring that implicit steps solve for, or use `solver: Explicit`");
-    }
+    let message = "the kinematic law corrects explicit steps, and there are none";
+    refuse_kinematic(scene_, message, "use `solver: Explicit`", validator);
     refused(scene_, "implicit steps", "`solver: Explicit`", validator);
+}
+
+/// Refuses the kinematic law.
+fn refuse_kinematic(scene_: &Scene, message: &str, instead: &str, validator: &mut Validator) {
+    let kinematic = |(_, contact): &(usize, &Contact)| contact.law() == ContactLaw::Kinematic;
+    for (number, _) in scene_.contacts.iter().enumerate().filter(kinematic) {
+        let note = format!("write `law: Penalty(share: 1)`, a spring that is solved for, or {instead}");
+        validator.out.error_at(scene("contacts").index(number), message).note(note);
+    }
 }
 
 /// What has a step of its own that knows central differences only.

@@ -326,12 +326,6 @@ fn law(scene_: &Scene, validator: &mut Validator, path: &Path, contact: &Contact
     let ContactLaw::Penalty { share, damping } = contact.law() else { return };
     validator.above_zero(&path.name("share"), share, "");
     validator.not_negative(&path.name("damping"), damping, "");
-    if scene_.is_static() {
-        validator
-            .out
-            .error_at(path, "a spring of contact is one by the step, and a static analysis has none")
-            .note("leave `law` out: the kinematic law needs no stiffness");
-    }
     if let Contact::Between { sweeps, .. } | Contact::Itself { sweeps, .. } = contact
         && *sweeps > 1
     {

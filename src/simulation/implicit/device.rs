@@ -71,7 +71,7 @@ impl OnDevice {
     /// Makes buffers and kernels, with room for a coarse level of that size.
     fn new(trial: &mut Trial<'_>, formula: &Formula, room: Room) -> Result<Self, Error> {
         let axes = trial.axes;
-        let slope = trial.looks_at_velocities().then_some(formula.after * formula.of_displacement);
+        let slope = trial.looks_at_steps().then_some(formula.after * formula.of_displacement);
         let extent = Extent::of(axes, formula.stiffness());
         let mut made = None;
         let mut counts = [0; 2];

@@ -5,7 +5,8 @@ use super::formula::Formula;
 use super::trial::Trial;
 use crate::error::Error;
 
-/// Of the velocity at the end the step (m) that it is, where loads look at that.
+/// Of the velocity at the end the step (m) that it is, where loads look at that; at rest, where springs do, the way
+/// from where the search began.
 pub(super) fn steps_to<'s>(
     formula: &Formula,
     h: f64,
@@ -14,9 +15,12 @@ pub(super) fn steps_to<'s>(
     steps: &'s mut [f64],
     trial: &Trial<'_>,
 ) -> Option<&'s [f64]> {
-    trial.looks_at_velocities().then(|| {
+    trial.looks_at_steps().then(|| {
         for (axis, step) in steps.iter_mut().enumerate() {
-            *step = h * motion.arrival(formula, axis, h, w[axis]).0;
+            *step = match formula.is_of_rest() {
+                true => w[axis] - motion.u[axis],
+                false => h * motion.arrival(formula, axis, h, w[axis]).0,
+            };
         }
         &*steps
     })

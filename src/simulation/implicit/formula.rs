@@ -60,9 +60,15 @@ impl Formula {
         before + h * (self.before * accelerations[0] + self.after * accelerations[1])
     }
 
-    /// What a displacement of 1 m makes of the step (m), which is that of the velocity at the end.
+    /// Whether it is that of rest.
+    pub fn is_of_rest(&self) -> bool {
+        self.of_displacement == 0.0
+    }
+
+    /// What a displacement of 1 m makes of the step (m), which is that of the velocity at the end; at rest the way
+    /// there itself.
     pub fn step(&self) -> f64 {
-        self.after * self.of_displacement
+        if self.is_of_rest() { 1.0 } else { self.after * self.of_displacement }
     }
 
     /// What a displacement of 1 m changes of the equation of an axis (N/m), beside forces: with its mass (kg) and

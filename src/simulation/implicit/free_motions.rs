@@ -14,6 +14,9 @@ const DEPENDENT: f64 = 1e-9;
 #[derive(Clone, Debug)]
 pub(super) struct FreeMotion {
     body: String,
+    /// Whether something may touch the body, and whether it is glued or tied: no constraint, but it may hold it.
+    pub may_touch: bool,
+    pub is_tied: bool,
     /// How many pieces the body has.
     pieces: usize,
     /// Nodes among those of all bodies, and where they are from the middle (m).
@@ -31,7 +34,7 @@ pub(super) fn free_motions(world: &World, axes: &Axes, free: &[bool]) -> Vec<Fre
         let (Some(rest), Some(u)) = (world.get::<RestPosition>(body), world.get::<Displacement>(body)) else {
             continue;
         };
-        let pieces = pieces(world, body);
+        let (pieces, [may_touch, is_tied]) = (pieces(world, body), may_hold(world, body));
         let name = world.get::<Label>(body).map(|label| label.0.clone()).unwrap_or_default();
         for piece in &pieces {
             let place = |node: usize| rest.0[node] + u.vector(node);
@@ -41,11 +44,27 @@ pub(super) fn free_motions(world: &World, axes: &Axes, free: &[bool]) -> Vec<Fre
             let size = nodes.iter().map(|(_, arm)| arm.length()).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
             for [rotation, translation] in without_constraint(&nodes, size, free) {
                 let (body, nodes) = (name.clone(), nodes.clone());
-                motions.push(FreeMotion { body, pieces: pieces.len(), nodes, middle, translation, rotation });
+                motions.push(FreeMotion {
+                    body,
+                    may_touch,
+                    is_tied,
+                    pieces: pieces.len(),
+                    nodes,
+                    middle,
+                    translation,
+                    rotation,
+                });
             }
         }
     }
     motions
+}
+
+/// Whether springs of contact or threads may hold a body, and whether glue may.
+fn may_hold(world: &World, body: Entity) -> [bool; 2] {
+    let of = world.entity(body);
+    let meets = of.contains::<ToolTouch>() || of.contains::<SurfaceTouch>() || of.contains::<Sutured>();
+    [meets, world.get_resource::<Glue>().is_some_and(|glue| glue.bodies.contains(&body))]
 }
 
 /// Rotations (rad/m) and translations that move no held axis: the null space of Σ c cᵀ over these, c what each of six
@@ -94,10 +113,24 @@ fn null_space(mut a: [[f64; 6]; 6]) -> Vec<[f64; 6]> {
 }
 
 impl FreeMotion {
+    /// How it moves a node that is so far from the middle (m).
+    fn along(&self, arm: DVec3) -> DVec3 {
+        self.translation + self.rotation.cross(arm)
+    }
+
+    /// How it moves all axes.
+    pub fn axes(&self, count: usize) -> Vec<f64> {
+        let mut axes = vec![0.0; count];
+        for (node, arm) in &self.nodes {
+            axes[3 * node..3 * node + 3].copy_from_slice(&self.along(*arm).to_array());
+        }
+        axes
+    }
+
     /// The work of forces (N) on all axes along it, and the sum of its parts' sizes.
     pub fn work(&self, forces: &[f64]) -> (f64, f64) {
         let of_node = |(node, arm): &(usize, DVec3)| {
-            let along = self.translation + self.rotation.cross(*arm);
+            let along = self.along(*arm);
             (0..3).map(|i| along[i] * forces[3 * node + i]).collect::<Vec<f64>>()
         };
         let parts: Vec<f64> = self.nodes.iter().flat_map(of_node).collect();

@@ -3,7 +3,7 @@
 use super::axes::{Axes, Motion};
 use super::formula::Formula;
 use super::newton::Workspace;
-use crate::components::Grasps;
+use crate::components::{ExternalForce, Grasps, InternalForce};
 use crate::systems::{HeldNode, held_in_step, note_held};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -36,13 +36,28 @@ impl Grasped {
         Self(all)
     }
 
-    /// Notes the forces of tools at the end of a step of h (s): what balances forces, damping and inertia there.
+    /// Makes the forces of tools loads at rest, where they balance those of elements and all others.
+    pub fn load(&self, world: &mut World) {
+        for (HeldNode { body, row, .. }, _, own) in &self.0 {
+            let Some(internal) = world.get::<InternalForce>(*body).map(|internal| internal.vector(*row)) else {
+                continue;
+            };
+            let Some(mut external) = world.get_mut::<ExternalForce>(*body) else { continue };
+            for i in (0..3).filter(|&i| own[i]) {
+                external.set(3 * row + i, internal[i]);
+            }
+        }
+    }
+
+    /// Notes the forces of tools at the end of a step of h (s): what balances forces, damping and inertia there; at rest
+    /// forces alone.
     pub fn note(&self, world: &mut World, (formula, h, motion): (&Formula, f64, &Motion), space: &Workspace) {
         for (node, first, own) in &self.0 {
             let of_axis = |i: usize| {
                 let axis = first + i;
                 let velocity = motion.arrival(formula, axis, h, space.w[axis]).0;
                 let inertial = motion.mass[axis] * (velocity - motion.v[axis]) / h + motion.damping[axis] * velocity;
+                let inertial = if formula.is_of_rest() { 0.0 } else { inertial };
                 if own[i] { space.net[axis] + inertial } else { 0.0 }
             };
             note_held(world, node, DVec3::from_array([0, 1, 2].map(of_axis)));

@@ -62,6 +62,7 @@ impl Iterations {
             sums: &self.sums,
             on_device: &mut self.on_device,
             h,
+            farthest: None,
         }
     }
 

@@ -11,6 +11,7 @@ mod free_motions;
 mod grasped;
 mod iterations;
 mod kept;
+mod minimal_residual;
 mod newton;
 mod preconditioner;
 mod report;
@@ -23,6 +24,7 @@ mod unsupported;
 mod work;
 
 pub(super) use iterations::OfForces;
+pub use newton::PathPoint;
 pub use report::ImplicitSteps;
 pub(super) use statics::{Attempt, Rest, Statics};
 pub(super) use step::Implicit;

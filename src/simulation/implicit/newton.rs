@@ -1,7 +1,10 @@
 //! Newton's iterations of a step: inexact solves (Eisenstat & Walker 1996), a line search on the work of the residual
 //! along the way (Matthies & Strang 1979).
 
+mod along;
 mod search;
+
+pub use along::PathPoint;
 
 use super::axes::Motion;
 use super::conjugate_gradients::{Ended, Solved, Stop, Vectors, solve};
@@ -10,6 +13,7 @@ use super::differences::{difference, steps_to};
 use super::formula::Formula;
 use super::preconditioner::{Operator, Preconditioner};
 use super::report::ImplicitSteps;
+use super::springs::Springs;
 use super::sums::Sums;
 use super::trial::{Trial, Tried};
 use crate::components::{Displacement, Precision};
@@ -127,6 +131,8 @@ pub(super) struct Newton<'a, 'w> {
     pub on_device: &'a mut Option<OnDevice>,
     /// The length of the step (s); 1 in statics, where nothing has a velocity.
     pub h: f64,
+    /// How far axes may go in an iteration (m), where who meets whom is looked for in each of them; at rest.
+    pub farthest: Option<f64>,
 }
 
 impl Newton<'_, '_> {
@@ -147,6 +153,10 @@ impl Newton<'_, '_> {
         let mut before = size;
         let (mut floor, mut iterations, mut remaining) = (0.0, 0, f64::INFINITY);
         loop {
+            if iterations > 0 && self.farthest.is_some() && Springs::seek(self.trial.world)? {
+                tried = self.forces_at_w()?;
+                size = self.residual();
+            }
             let enough = self.settings.tolerance * self.scale(&tried);
             if iterations == ROUNDING_FROM {
                 floor = self.rounding()?;
@@ -313,7 +323,7 @@ impl Newton<'_, '_> {
 
     fn conjugate_gradients(&mut self, tolerance: f64) -> Result<Solved, Error> {
         self.follow();
-        let Self { trial, settings, motion, space, preconditioner, report, sums, on_device, h } = self;
+        let Self { trial, settings, motion, space, preconditioner, report, sums, on_device, h, .. } = self;
         let most = settings.budget.map_or(MOST_PRODUCTS, |budget| budget.saturating_sub(trial.count + 1).max(1));
         let Workspace { inertia, w, net, elsewhere, steps, right, p, vectors, .. } = &mut **space;
         let of_step = (&settings.formula, *h, *motion);

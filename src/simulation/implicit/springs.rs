@@ -7,6 +7,9 @@ use crate::error::Error;
 use crate::systems::{find_surface_springs, find_thread_springs, find_tool_springs, seek_surfaces};
 use bevy_ecs::prelude::*;
 
+/// What springs resist of a motion at least, as a share of what they would across its way, beyond rounding.
+const RESISTS: f64 = 1e-12;
+
 /// Those that touch.
 #[derive(Default)]
 pub(super) struct Springs {
@@ -14,11 +17,11 @@ pub(super) struct Springs {
 }
 
 impl Springs {
-    /// Looks which points of surfaces may touch what in the step that begins.
-    pub fn seek(world: &mut World) -> Result<(), Error> {
+    /// Looks which points of surfaces may touch what in the step that begins. Whether there are bodies that may.
+    pub fn seek(world: &mut World) -> Result<bool, Error> {
         match &mut world.resource_mut::<Clock>().springs {
             Some(springs) => springs.forces = SpringForces::Sought,
-            None => return Ok(()),
+            None => return Ok(false),
         }
         seek_surfaces(world)
     }
@@ -52,6 +55,18 @@ impl Springs {
             let [of_place, of_step] = spring.slopes;
             spring.add((of_place + of_step * step) * spring.relative(p) * share, image);
         }
+    }
+
+    /// Whether they resist a motion of all axes (m).
+    pub fn resist(&self, motion: &[f64]) -> bool {
+        let (mut resists, mut most) = (0.0, 0.0);
+        for spring in &self.touching {
+            let [of_place, of_step] = spring.slopes;
+            let (slope, way) = (of_place + of_step, spring.relative(motion));
+            resists += way.dot(slope * way);
+            most += way.length_squared() * slope.to_cols_array().iter().map(|entry| entry.abs()).fold(0.0, f64::max);
+        }
+        resists > RESISTS * most
     }
 
     /// The sum of the squares of their forces (N²).

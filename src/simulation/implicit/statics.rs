@@ -1,25 +1,34 @@
 //! Equilibrium by Newton's iterations: those of an implicit step without inertia.
 
+mod touching;
+
 use super::super::ScheduledPass;
 use super::super::explain::SolverInUse;
-use super::axes::Axes;
+use super::axes::{Axes, Motion};
 use super::device::{bring_state, send_state};
+use super::differences::steps_to;
 use super::formula::Formula;
 use super::free_motions::{FreeMotion, free_motions};
+use super::grasped::Grasped;
 use super::iterations::{Iterations, OfForces};
-use super::newton::{Found, Lost, Newton, Settings, Workspace};
+use super::kept::Kept;
+use super::newton::{Found, Lost, Newton, PathPoint, Settings, Workspace};
 use super::report::ImplicitSteps;
 use super::springs::Springs;
 use super::trial::Trial;
 use crate::components::*;
-use crate::error::Error;
-use crate::scene::schema;
+use crate::error::{Criterion, Error};
+use crate::observation::Observer;
+use crate::scene::schema::{self, ArcLength};
 use crate::snapshot::Keeping;
 use bevy_ecs::prelude::*;
+use touching::{Growth, Touching};
 use web_time::Instant;
 
 /// Newton's iterations at most: slender bodies spend some twenty on the way.
 const MOST_ITERATIONS: u32 = 60;
+/// The residual to which rest is sought on the way to all loads.
+const ON_THE_WAY: f64 = 1e-3;
 /// A share of loads along a motion that nothing holds, which is more than rounding.
 const UNBALANCED: f64 = 1e-5;
 
@@ -28,6 +37,7 @@ pub(in crate::simulation) struct Statics {
     axes: Axes,
     iterations: Iterations,
     springs: Springs,
+    arc: Option<ArcLength>,
 }
 
 /// What came of it.
@@ -49,15 +59,18 @@ pub(in crate::simulation) struct Rest {
     pub iterations: u64,
     /// Whether bodies give way along some motion.
     pub unstable: bool,
+    /// The path that led there, where one was followed; none else.
+    pub path: Vec<PathPoint>,
 }
 
 impl Statics {
-    /// What seeks the equilibrium of bodies to a residual of a tolerance.
-    pub fn new(tolerance: f64, world: &mut World) -> Self {
+    /// What seeks the equilibrium of bodies to a residual of a tolerance, along a path or not.
+    pub fn new(tolerance: f64, arc: Option<ArcLength>, world: &mut World) -> Self {
         let axes = Axes::of(world);
         let settings = Settings { formula: Formula::of_rest(), newton: MOST_ITERATIONS, tolerance, budget: None };
-        let iterations = Iterations::new(settings, schema::Preconditioner::TwoLevel, &axes, world);
-        Self { axes, iterations, springs: Springs::default() }
+        let mut iterations = Iterations::new(settings, schema::Preconditioner::TwoLevel, &axes, world);
+        iterations.kept = Kept::of_rest();
+        Self { axes, iterations, springs: Springs::default(), arc }
     }
 
     /// What they took.
@@ -68,10 +81,22 @@ impl Statics {
     /// What it is made of.
     pub fn in_use(&mut self, world: &mut World, passes: OfForces<'_>) -> SolverInUse {
         let Settings { newton, tolerance, .. } = self.iterations.settings;
-        let first = format!(
-            "rest by at most {newton} Newton iterations, to a residual of {tolerance}; pseudo-steps where they do not arrive"
-        );
+        let first = match &self.arc {
+            Some(ArcLength { points, .. }) => format!(
+                "a path of at most {points} equilibria by arc length, each to a residual of {tolerance}, with the method of \
+                 minimal residuals in place of conjugate gradients"
+            ),
+            None => format!(
+                "rest by at most {newton} Newton iterations, to a residual of {tolerance}; pseudo-steps where they do not \
+                 arrive"
+            ),
+        };
         self.iterations.in_use(first, &self.axes, world, passes)
+    }
+
+    /// Whether a path is followed.
+    pub fn follows_path(&self) -> bool {
+        self.arc.is_some()
     }
 
     /// The residual at which it counts as found.
@@ -86,75 +111,211 @@ impl Statics {
         self.iterations.kept.keep(world);
         world.insert_resource(TrialForces { trying: true, ..TrialForces::default() });
         let before = self.iterations.report.newton_iterations;
-        let found = self.find(world, passes, before);
+        let found = match self.arc {
+            Some(arc) => self.follow(world, passes, &arc),
+            None => self.find(world, passes),
+        };
         world.remove_resource::<TrialForces>();
+        if let Some(springs) = &mut world.resource_mut::<Clock>().springs {
+            springs.forces = SpringForces::Stepped;
+        }
         if !matches!(found, Ok(Attempt::Found(_))) {
             self.iterations.kept.put_back(world, |_| true);
         }
         send_state(world)?;
         self.iterations.end_step(started);
         match found {
+            Ok(Attempt::Found(mut rest)) => {
+                rest.iterations -= before;
+                Ok(Attempt::Found(rest))
+            }
             Ok(attempt) => Ok(attempt),
+            Err(Lost::Because(what)) if self.follows_path() => Err(not_followed(world, what)),
             Err(Lost::Because(_)) => Ok(Attempt::NotFound),
             Err(Lost::Error(error)) => Err(error),
         }
     }
 
-    fn find(&mut self, world: &mut World, passes: &mut [ScheduledPass], before: u64) -> Result<Attempt, Lost> {
+    fn find(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<Attempt, Lost> {
         let clock = *world.resource::<Clock>();
         let Some(relaxation) = clock.relaxation else { return Ok(Attempt::NotFound) };
-        let Self { axes, iterations, springs } = self;
-        let mut trial = Trial { world, passes, axes, springs, step: clock.step, count: 0, elsewhere: false };
+        let touching = clock.springs.map(|_| Touching::of(world, &relaxation, clock.step));
+        let Some(mut growth) = touching.map_or(Some(Growth::at_once()), |touching| touching.growth) else {
+            return Ok(Attempt::NotFound);
+        };
+        let farthest = touching.map(|touching| touching.farthest);
+        loop {
+            let shares = growth.next();
+            match self.balance(world, passes, (relaxation.end, shares, farthest)) {
+                Ok(Balance::Found { .. }) if shares[1] < 1.0 => growth.succeeded(),
+                Ok(Balance::Found { remaining, unstable }) => {
+                    return Ok(Attempt::Found(self.rest(remaining, unstable, Vec::new())));
+                }
+                Ok(Balance::Loose) => return Ok(Attempt::NotFound),
+                Ok(Balance::NotHeld(motions)) => return Ok(Attempt::NotHeld(motions)),
+                Err(Lost::Error(error)) => return Err(Lost::Error(error)),
+                Ok(Balance::NotFound) | Err(Lost::Because(_)) => {
+                    if !growth.failed() {
+                        return Ok(Attempt::NotFound);
+                    }
+                    self.axes.displace(world, &self.iterations.motion.u);
+                }
+            }
+        }
+    }
+
+    /// Rest where bodies are.
+    fn rest(&self, remaining: f64, unstable: bool, path: Vec<PathPoint>) -> Rest {
+        let Iterations { space, report, sums, .. } = &self.iterations;
+        Rest { remaining, displaced: sums.norm(&space.w), iterations: report.newton_iterations, unstable, path }
+    }
+
+    /// Follows the path of equilibria from no load to all of it, or as far as it is wanted.
+    fn follow(&mut self, world: &mut World, passes: &mut [ScheduledPass], arc: &ArcLength) -> Result<Attempt, Lost> {
+        let clock = *world.resource::<Clock>();
+        let end = clock.relaxation.map_or(0.0, |relaxation| relaxation.end);
+        let Self { axes, iterations, springs, .. } = self;
+        let trial = Trial { world, passes, axes, springs, step: clock.step, count: 0, elsewhere: false };
         let Iterations { motion, space, .. } = &mut *iterations;
         axes.read(trial.world, motion);
-        trial.world.resource_mut::<Signals>().approach(relaxation.end, [1.0, 1.0]);
-        trial.boundary()?;
-        super::step::held_axes(trial.world, axes, motion, &mut space.to_go);
-        space.inertia.fill(0.0);
-        space.constant.fill(0.0);
-        space.w.copy_from_slice(&motion.u);
+        trial.world.resource_mut::<Signals>().approach(end, [1.0, 1.0]);
+        begin(space, motion);
         let mut newton = iterations.newton(trial, 1.0);
         let motions = free_motions(newton.trial.world, newton.trial.axes, &newton.motion.free);
-        let not_held = not_held(&motions, &mut newton)?;
-        if !not_held.is_empty() {
-            return Ok(Attempt::NotHeld(not_held));
+        if let Holds::Nothing(motions) = holds(&motions, &mut newton)? {
+            return Ok(Attempt::NotHeld(motions));
+        }
+        let path = newton.follow_path(end, arc, |world, number, point| {
+            let PathPoint { load_factor, length, unstable, iterations } = *point;
+            let row = [number as f64, load_factor, length, iterations as f64, f64::from(u8::from(unstable))];
+            world.resource_scope(|world, mut observer: Mut<Observer>| observer.note_path(world, row))
+        });
+        let trial = newton.trial;
+        iterations.count(trial.count);
+        let path = path?;
+        let Workspace { w, step, acceleration, .. } = &mut iterations.space;
+        step.fill(0.0);
+        acceleration.fill(0.0);
+        axes.arrive(trial.world, w, step, acceleration);
+        let unstable = path.last().is_some_and(|point| point.unstable);
+        Ok(Attempt::Found(self.rest(0.0, unstable, path)))
+    }
+
+    /// Seeks where bodies are at rest while loads and motions go from one share of what they are at a time (s) to
+    /// another.
+    fn balance(
+        &mut self,
+        world: &mut World,
+        passes: &mut [ScheduledPass],
+        (end, shares, farthest): (f64, [f64; 2], Option<f64>),
+    ) -> Result<Balance, Lost> {
+        let step = world.resource::<Clock>().step;
+        let Self { axes, iterations, springs, .. } = self;
+        let mut trial = Trial { world, passes, axes, springs, step, count: 0, elsewhere: false };
+        let Iterations { motion, space, .. } = &mut *iterations;
+        axes.read(trial.world, motion);
+        trial.world.resource_mut::<Signals>().approach(end, shares);
+        trial.boundary()?;
+        Springs::seek(trial.world)?;
+        super::step::held_axes(trial.world, axes, motion, &mut space.to_go);
+        let grasped = Grasped::hold(trial.world, axes, motion, &mut space.to_go);
+        begin(space, motion);
+        let mut newton = iterations.newton(trial, 1.0);
+        newton.farthest = farthest;
+        if shares[1] < 1.0 {
+            newton.settings.tolerance = newton.settings.tolerance.max(ON_THE_WAY);
+        }
+        let motions = free_motions(newton.trial.world, newton.trial.axes, &newton.motion.free);
+        match holds(&motions, &mut newton)? {
+            Holds::Enough => {}
+            Holds::Perhaps => return Ok(Balance::Loose),
+            Holds::Nothing(motions) => return Ok(Balance::NotHeld(motions)),
         }
         let found = newton.solve();
         let rest = match &found {
             // along a motion that nothing holds there is no resistance either
-            Ok(Found { solved: true, remaining, .. }) => Some((*remaining, motions.is_empty() && newton.gives_way()?)),
+            Ok(Found { solved: true, remaining, .. }) => {
+                let unstable = shares[1] == 1.0 && motions.is_empty() && newton.gives_way()?;
+                Some(Balance::Found { remaining: *remaining, unstable })
+            }
             _ => None,
         };
         let mut trial = newton.trial;
         iterations.count(trial.count);
         found?;
-        let Some((remaining, unstable)) = rest else { return Ok(Attempt::NotFound) };
-        let Workspace { w, net, step, acceleration, .. } = &mut iterations.space;
-        trial.forces(w, None, net)?;
+        let Some(rest) = rest else { return Ok(Balance::NotFound) };
+        let Iterations { settings, motion, space, .. } = &mut *iterations;
+        let Workspace { w, net, steps, .. } = &mut *space;
+        match steps_to(&settings.formula, 1.0, motion, w, steps, &trial) {
+            Some(steps) => trial.noted_forces(w, Some(steps), net)?,
+            None => trial.forces(w, None, net)?,
+        };
+        grasped.note(trial.world, (&settings.formula, 1.0, motion), space);
+        grasped.load(trial.world);
+        let Workspace { w, step, acceleration, .. } = space;
         step.fill(0.0);
         acceleration.fill(0.0);
         axes.arrive(trial.world, w, step, acceleration);
-        Ok(Attempt::Found(Rest {
-            remaining,
-            displaced: iterations.sums.norm(w),
-            iterations: iterations.report.newton_iterations - before,
-            unstable,
-        }))
+        Ok(rest)
     }
 }
 
-/// What loads move and nothing holds, in words, where all forces on nodes are known beforehand: those of systems of
-/// one's own may hold them elsewhere.
-fn not_held(motions: &[FreeMotion], newton: &mut Newton<'_, '_>) -> Result<Vec<String>, Error> {
+/// Begins where bodies stand, without inertia.
+fn begin(space: &mut Workspace, motion: &Motion) {
+    space.inertia.fill(0.0);
+    space.constant.fill(0.0);
+    space.w.copy_from_slice(&motion.u);
+}
+
+/// That a path was not followed to its end.
+fn not_followed(world: &mut World, what: String) -> Error {
+    world.resource_scope(|world, observer: Mut<Observer>| {
+        observer.unsolved(world, what, Criterion { value: None, ..Criterion::of("equilibrium") })
+    })
+}
+
+/// What came of a search for rest at a share of all loads.
+enum Balance {
+    Found {
+        remaining: f64,
+        unstable: bool,
+    },
+    NotFound,
+    /// What may hold bodies does not touch them yet.
+    Loose,
+    NotHeld(Vec<String>),
+}
+
+/// What there is against rigid motions that loads do work along.
+enum Holds {
+    /// No load does, or springs resist.
+    Enough,
+    /// Something that does not touch yet may.
+    Perhaps,
+    /// Nothing: the motions, in words.
+    Nothing(Vec<String>),
+}
+
+/// What holds rigid motions that no constraint does, where all forces on nodes are known beforehand: those of systems
+/// of one's own may hold them elsewhere.
+fn holds(motions: &[FreeMotion], newton: &mut Newton<'_, '_>) -> Result<Holds, Error> {
     let are_known = newton.trial.world.get_resource::<Keeping>().is_none_or(|keeping| keeping.written.is_empty());
     if motions.is_empty() || !are_known {
-        return Ok(Vec::new());
+        return Ok(Holds::Enough);
     }
     newton.forces_at_w()?;
-    let loads = &newton.space.net;
+    let (loads, springs) = (&newton.space.net, &*newton.trial.springs);
     let is_unbalanced = |motion: &&FreeMotion| {
         let (sum, size) = motion.work(loads);
         sum.abs() > UNBALANCED * size
     };
-    Ok(motions.iter().filter(is_unbalanced).map(|motion| motion.to_string()).collect())
+    let is_loose = |motion: &&FreeMotion| !motion.is_tied && !springs.resist(&motion.axes(loads.len()));
+    let loose: Vec<&FreeMotion> = motions.iter().filter(is_unbalanced).filter(is_loose).collect();
+    if loose.is_empty() {
+        return Ok(Holds::Enough);
+    }
+    if loose.iter().any(|motion| motion.may_touch) {
+        return Ok(Holds::Perhaps);
+    }
+    Ok(Holds::Nothing(loose.iter().map(|motion| motion.to_string()).collect()))
 }

@@ -55,10 +55,11 @@ impl Trial<'_> {
         }
     }
 
-    /// Whether loads look at how fast nodes move: in statics nothing does.
-    pub fn looks_at_velocities(&self) -> bool {
-        if self.world.resource::<Clock>().relaxation.is_some() {
-            return false;
+    /// Whether loads look at the step that nodes take: at rest springs alone do, for their friction.
+    pub fn looks_at_steps(&self) -> bool {
+        let clock = self.world.resource::<Clock>();
+        if clock.relaxation.is_some() {
+            return clock.springs.is_some();
         }
         let name = DisplacementIncrement::NAME;
         let forces = self.passes.iter().filter(|pass| pass.finds_forces);

@@ -22,13 +22,15 @@ struct Bracket {
     /// How far, and the work there (J).
     near: [f64; 2],
     far: Option<[f64; 2]>,
+    /// How far it leads at most.
+    ends: f64,
     bisects: bool,
 }
 
 impl Bracket {
-    /// Of a way with such a work at its beginning (J).
-    fn from(work: f64) -> Self {
-        Self { near: [0.0, work], far: None, bisects: true }
+    /// Of a way that leads so far at most, with such a work at its beginning (J).
+    fn from(work: f64, ends: f64) -> Self {
+        Self { near: [0.0, work], far: None, ends, bisects: true }
     }
 
     /// Whether the work is known to change its sign, and not only to end somewhere.
@@ -67,7 +69,8 @@ impl Newton<'_, '_> {
         let begins = self.sums.dot(&self.space.p, &self.space.g);
         let touches = self.trial.world.resource::<Clock>().springs.is_some();
         let moves = self.moves();
-        let (mut share, mut bracket, mut halvings) = (1.0, Bracket::from(begins), 0);
+        let ends = self.longest();
+        let (mut share, mut bracket, mut halvings) = (ends, Bracket::from(begins, ends), 0);
         for look in 0..=MOST_LOOKS {
             if look > MOST_HALVINGS && !bracket.crosses() {
                 break;
@@ -101,6 +104,14 @@ impl Newton<'_, '_> {
         )))
     }
 
+    /// The share of p beyond which an axis would go farther than it may.
+    fn longest(&self) -> f64 {
+        let Some(farthest) = self.farthest else { return 1.0 };
+        let Workspace { p, to_go, .. } = &*self.space;
+        let most = p.iter().zip(to_go).map(|(p, left)| (p + left).abs()).fold(0.0, f64::max);
+        if most > farthest { farthest / most } else { 1.0 }
+    }
+
     /// Whether the work of the residual (J) has fallen enough where a share of the way is gone. Of a share, that share
     /// of the fall is asked for, or directions along which work falls as the tangent says were refused. Where something
     /// touches, a way counts, too, at whose end the residual still leads on: springs have let go, of which the tangent
@@ -109,7 +120,7 @@ impl Newton<'_, '_> {
         let along = way.along.abs();
         let size = if way.gives_way { work.max(0.0) } else { work.abs() };
         let most = if touching.is_some_and(Bracket::crosses) { FOUND } else { 1.0 - (1.0 - DESCENT) * share };
-        let leads_on = |bracket: &Bracket| share == 1.0 && work * bracket.near[1] > 0.0 && size < along;
+        let leads_on = |bracket: &Bracket| share == bracket.ends && work * bracket.near[1] > 0.0 && size < along;
         size <= most * along || touching.is_some_and(leads_on)
     }
 }

@@ -4,7 +4,7 @@ use super::*;
 
 /// How often it looks until the work has fallen to the share that is asked for.
 fn looks(work: impl Fn(f64) -> f64) -> u32 {
-    let (mut bracket, mut share) = (Bracket::from(work(0.0)), 1.0);
+    let (mut bracket, mut share) = (Bracket::from(work(0.0), 1.0), 1.0);
     for look in 0..50 {
         if work(share).abs() <= FOUND * work(0.0).abs() {
             return look;
