@@ -73,12 +73,11 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let settling = settling(body, edge, world);
         let led = |contact: &ToolContact| scene.tools.get(&contact.tool).is_some_and(|tool| tool.port.is_some());
         let felt = tools.iter().any(led);
-        let (rows, masks): (Vec<u32>, _) = marks.into_iter().unzip();
+        let (rows, masks) = marks.into_iter().unzip();
         let Some(rest) = world.get::<RestPosition>(body.entity) else { continue };
-        let places = rows.iter().map(|&row| rest.0[row as usize] - reference);
-        let extent = places.clone().map(DVec3::length).fold(0.0, f64::max);
-        let at_rest = places.map(|place| place.as_vec3().to_array()).collect();
-        let contacts = ToolContacts { tools, reference, rows, masks, at_rest, extent, edge, settling, felt };
+        let at_rest = Vec::new();
+        let contacts = ToolContacts { tools, reference, rows, masks, at_rest, extent: 0.0, edge, settling, felt };
+        let contacts = contacts.placed(&rest.0);
         let touch = Reals::zeros(assembly.precision, contacts.numbers() * contacts.rows.len());
         world.entity_mut(body.entity).insert((contacts, ToolTouch(touch)));
     }

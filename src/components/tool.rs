@@ -211,6 +211,14 @@ impl ToolContacts {
     /// Tools that one body may meet: bits of a mask.
     pub const MOST: usize = crate::scene::limits::TOOLS_OF_A_BODY;
 
+    /// With the places at rest (m) of its nodes, of all of the body's.
+    pub fn placed(mut self, rest: &[DVec3]) -> Self {
+        let places = self.rows.iter().map(|&row| rest[row as usize] - self.reference);
+        self.extent = places.clone().map(DVec3::length).fold(0.0, f64::max);
+        self.at_rest = places.map(|place| place.as_vec3().to_array()).collect();
+        self
+    }
+
     /// Numbers a node in [`ToolTouch`].
     pub fn numbers(&self) -> usize {
         self.numbers_a_tool() * self.tools.len()
