@@ -49,8 +49,8 @@ impl Grasped {
         }
     }
 
-    /// Notes the forces of tools at the end of a step of h (s): what balances forces, damping and inertia there; at rest
-    /// forces alone.
+    /// Notes the forces of tools at the end of a step of h (s): what balances forces, damping and inertia there; at
+    /// rest forces alone.
     pub fn note(&self, world: &mut World, (formula, h, motion): (&Formula, f64, &Motion), space: &Workspace) {
         for (node, first, own) in &self.0 {
             let of_axis = |i: usize| {
