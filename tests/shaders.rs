@@ -370,8 +370,7 @@ fn every_shader_is_named_after_a_system_an_element_or_a_material_or_listed() {
     known.retain(|stem| Registry::default().get(stem).is_none_or(|system| system.device.is_some()));
     // that of one's own is a file of its author
     let laws = sinew::scene::schema::ELASTIC_LAWS.iter().filter(|word| **word != "law");
-    let parts =
-        kernel_units::SURFACES.into_iter().chain(kernel_units::ATTACHMENTS).chain(kernel_units::CONJUGATE_GRADIENTS);
+    let parts = [&kernel_units::SURFACES[..], &kernel_units::ATTACHMENTS, &kernel_units::CONJUGATE_GRADIENTS].concat();
     known.extend(laws.copied().chain(parts).map(str::to_owned));
     assert_eq!(stems("shaders"), known);
 }
@@ -385,8 +384,7 @@ fn all_fragments_of_the_folder_are_in_use() {
     used.extend(["guard_elements.wgsl".to_owned(), "guard_nodes.wgsl".to_owned()]);
     used.extend(kernel_units::CONJUGATE_GRADIENTS.map(|stem| format!("{stem}.wgsl")));
     let scene = SceneFile::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/own_system.ron"), &[]).unwrap();
-    let mut simulation = Simulation::new(&scene, &Options::default()).unwrap();
-    let explained = simulation.explain_on_gpu(&Registry::default()).unwrap();
+    let explained = Simulation::new(&scene, &Options::default()).unwrap().explain_on_gpu(&Registry::default()).unwrap();
     let fragments = explained.kernels.iter().flat_map(|kernel| &kernel.fragments);
     used.extend(fragments.filter_map(|f| f.path.strip_prefix("shaders/").map(str::to_owned)));
     used.extend([kernel_units::of_tools(), kernel_units::of_surfaces(), kernel_units::of_attachments()].concat());

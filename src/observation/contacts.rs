@@ -64,22 +64,3 @@ pub(super) fn loss(world: &mut World) -> Result<Option<f64>, Error> {
     losses.extend(super::free_tools::losses(world));
     Ok((!losses.is_empty()).then(|| losses.iter().sum()))
 }
-
-/// Energy (J) that contact has made since the start (negative: taken), where springs are its law and explicit steps
-/// take them; else nothing is known of what it may make.
-///
-/// # Errors
-/// What the GPU says.
-pub(super) fn made_by_springs(world: &mut World) -> Result<Option<f64>, Error> {
-    let of_tools = world
-        .query::<&ToolContacts>()
-        .iter(world)
-        .any(|contacts| contacts.tools.iter().any(|tool| tool.spring.is_some()));
-    let contacts = world.get_resource::<crate::systems::SurfaceContacts>();
-    let of_surfaces = contacts.is_some_and(|contacts| contacts.meetings.iter().flatten().any(|of| of.spring.is_some()));
-    let clock = world.resource::<Clock>();
-    if clock.springs.is_some() || clock.relaxation.is_some() || !(of_tools || of_surfaces) {
-        return Ok(None);
-    }
-    Ok(loss(world)?.map(|loss| -loss))
-}

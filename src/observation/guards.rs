@@ -34,6 +34,8 @@ pub struct GuardSettings {
     pub foreign: bool,
     /// Whether elements may go and take energy with them: what is lost then is no error.
     pub removal: bool,
+    /// Whether springs of contact act as loads, and may make energy.
+    pub springs: bool,
 }
 
 /// What broke down, if something did: the first displacement that is not finite, or element that is turned inside out.
@@ -156,7 +158,8 @@ pub(super) fn check_balance(
     remember(&mut memory, &seen, world);
     let (made, held) = balance(&mut memory, &seen, settings, last, world);
     hourglass(&mut memory, &seen, settings, world);
-    if let Some(made) = super::contacts::made_by_springs(world)? {
+    if settings.springs {
+        let made = super::contacts::loss(world)?.map_or(0.0, |loss| -loss);
         rattling(&mut memory, made, settings, world);
     }
     let (scale, rounding, passed) = (memory.scale, memory.rounding, memory.in_doubt.is_none());

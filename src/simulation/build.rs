@@ -21,7 +21,7 @@ use crate::components::*;
 use crate::error::Error;
 use crate::observation::{GuardKernels, GuardSettings, Observer, Track, WrittenFields};
 use crate::scene::SceneFile;
-use crate::scene::schema::{Guard, Scene};
+use crate::scene::schema::{ContactLaw, Guard, Scene};
 use crate::snapshot::{Keeping, identity};
 use crate::systems::{
     HostSystem, NodePass, NodeRows, OnHost, Phase, Registry, System, give_shares, node_pass, patch_pass, shared_pass,
@@ -319,6 +319,9 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
         beyond: scene.scene.integration.beyond_stable_step && clock.relaxation.is_none(),
         foreign: false,
         removal: world.query::<&Alive>().iter(world).next().is_some(),
+        springs: scene.scene.contacts.iter().any(|contact| contact.law() != ContactLaw::Kinematic)
+            && clock.relaxation.is_none()
+            && !clock.velocities_at_ends,
     };
     observer.to_rest = clock.relaxation.is_some();
     observer.follows_path = scene.scene.follows_path();
