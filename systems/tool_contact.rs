@@ -19,7 +19,7 @@ use crate::components::*;
 use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 pub use in_step::ContactStep;
 use in_step::ToolInStep;
 use smallvec::SmallVec;
@@ -107,23 +107,21 @@ impl NodeSystem for ToolContacts {
     fn act<T: SimdScalar>(&self, step: &ContactStep, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
         let Some(touches) = nodes.touches.take() else { return };
         let own = places_within(&self.rows, nodes.first, nodes.rows());
-        let kept = touches.values.chunks_exact_mut(touches.numbers.max(1));
-        for ((&row, values), listed) in self.rows[own.clone()].iter().zip(kept).zip(own) {
-            let (row, mask) = (row as usize - nodes.first, self.masks[listed] & self.all());
+        let rows = self.rows[own.clone()].iter().zip(&self.masks[own]);
+        for ((&row, &mask), values) in rows.zip(touches.values.chunks_exact_mut(touches.numbers.max(1))) {
+            let (row, mask) = (row as usize - nodes.first, mask & self.all());
             match &step.springs {
-                Some(springs) if springs.forces.are_noted() => {
+                Some(springs) if springs.forces == SpringForces::Noted => {
                     self.press((step, springs), (row, mask), nodes, values);
                 }
                 // the solver finds them apart
                 Some(_) => {}
                 None => {
-                    let moved = nodes.displacement(row);
+                    let place = nodes.rest[row] - self.reference + nodes.displacement(row);
+                    let near = step.near(mask, place);
                     // most nodes are far from all tools, and were: nothing is read or written there but that
-                    if step.may_be_near(mask, Vec3::from_array(self.at_rest[listed]) + moved.as_vec3())
-                        || self.is_touched(values)
-                    {
-                        let place = nodes.rest[row] - self.reference + moved;
-                        self.touch(step, (row, step.near(mask, place), place), nodes, values);
+                    if near != 0 || self.is_touched(values) {
+                        self.touch(step, (row, near, place), nodes, values);
                     }
                 }
             }

@@ -74,10 +74,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let led = |contact: &ToolContact| scene.tools.get(&contact.tool).is_some_and(|tool| tool.port.is_some());
         let felt = tools.iter().any(led);
         let (rows, masks) = marks.into_iter().unzip();
-        let Some(rest) = world.get::<RestPosition>(body.entity) else { continue };
-        let at_rest = Vec::new();
-        let contacts = ToolContacts { tools, reference, rows, masks, at_rest, extent: 0.0, edge, settling, felt };
-        let contacts = contacts.placed(&rest.0);
+        let contacts = ToolContacts { tools, reference, rows, masks, edge, settling, felt };
         let touch = Reals::zeros(assembly.precision, contacts.numbers() * contacts.rows.len());
         world.entity_mut(body.entity).insert((contacts, ToolTouch(touch)));
     }

@@ -195,10 +195,6 @@ pub struct ToolContacts {
     pub rows: Vec<u32>,
     /// Of each of them, which tools: bit i is tool i.
     pub masks: Vec<u32>,
-    /// Where each of them is at rest (m, from the reference): rounded, side by side, to see at once who is far off.
-    pub at_rest: Vec<[f32; 3]>,
-    /// How far the farthest of these is from the reference (m).
-    pub extent: f64,
     /// Length of an edge of the surface (m): who is farther off cannot be there within a step.
     pub edge: f64,
     /// How fast nodes that are inside a tool at the start are pushed out (m/s).
@@ -210,14 +206,6 @@ pub struct ToolContacts {
 impl ToolContacts {
     /// Tools that one body may meet: bits of a mask.
     pub const MOST: usize = crate::scene::limits::TOOLS_OF_A_BODY;
-
-    /// With the places at rest (m) of its nodes, of all of the body's.
-    pub fn placed(mut self, rest: &[DVec3]) -> Self {
-        let places = self.rows.iter().map(|&row| rest[row as usize] - self.reference);
-        self.extent = places.clone().map(DVec3::length).fold(0.0, f64::max);
-        self.at_rest = places.map(|place| place.as_vec3().to_array()).collect();
-        self
-    }
 
     /// Numbers a node in [`ToolTouch`].
     pub fn numbers(&self) -> usize {

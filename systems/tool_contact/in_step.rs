@@ -2,7 +2,7 @@
 
 use crate::backend::cpu::IntegrationCoefficients;
 use crate::components::*;
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DMat3, DVec3};
 
 /// What a step needs.
 pub struct ContactStep {
@@ -18,9 +18,6 @@ pub struct ContactStep {
     pub(super) tools: [ToolInStep; ToolContacts::MOST],
 }
 
-/// The most by which rounding to f32 moves what is so far off, and more.
-const ROUNDING: f64 = 1e-5;
-
 /// A tool in a step.
 #[derive(Clone, Copy)]
 pub(super) struct ToolInStep {
@@ -32,7 +29,6 @@ pub(super) struct ToolInStep {
     pub change: Pose,
     /// What all that it may touch lies within.
     bound: Bound,
-    rounded: RoundedBound,
     /// Whether it is a plane that does not turn: the same normal and the same step everywhere.
     pub is_even: bool,
 }
@@ -54,50 +50,9 @@ impl Bound {
             Self::Below(normal, height) => normal.dot(place) <= height,
         }
     }
-
-    /// One around it for rounded places of nodes that are so far from the reference at rest (m).
-    fn around(&self, extent: f64) -> RoundedBound {
-        match *self {
-            Self::Ball(center, radius_squared) => {
-                let radius = (radius_squared.sqrt() + ROUNDING * (center.length() + extent)) * (1.0 + ROUNDING);
-                RoundedBound::Ball(center.as_vec3(), (radius * radius) as f32)
-            }
-            Self::Below(normal, height) => {
-                RoundedBound::Below(normal.as_vec3(), (height + ROUNDING * (height.abs() + extent)) as f32)
-            }
-        }
-    }
-}
-
-/// The same, for rounded places, and a little larger.
-#[derive(Clone, Copy)]
-enum RoundedBound {
-    Ball(Vec3, f32),
-    Below(Vec3, f32),
-}
-
-impl RoundedBound {
-    #[inline(always)]
-    fn holds(&self, place: Vec3) -> bool {
-        match *self {
-            Self::Ball(center, radius_squared) => center.distance_squared(place) <= radius_squared,
-            Self::Below(normal, height) => normal.dot(place) - ROUNDING as f32 * place.abs().element_sum() <= height,
-        }
-    }
 }
 
 impl ContactStep {
-    /// Whether any of some tools, as bits, may touch a node, by its place (m, from the reference) as it is in f32.
-    #[inline(always)]
-    pub(super) fn may_be_near(&self, tools: u32, place: Vec3) -> bool {
-        let (mut left, mut near) = (tools, false);
-        while left != 0 {
-            near |= self.tools[left.trailing_zeros() as usize].rounded.holds(place);
-            left &= left - 1;
-        }
-        near
-    }
-
     /// Which of some tools may touch a node at a place (m, from the reference); both as bits.
     #[inline(always)]
     pub(super) fn near(&self, tools: u32, place: DVec3) -> u32 {
@@ -117,8 +72,7 @@ impl ToolContacts {
         let values = signals.values();
         let nowhere = Pose { rotation: DMat3::ZERO, at: DVec3::ZERO };
         let bound = Bound::Ball(DVec3::ZERO, 0.0);
-        let rounded = bound.around(0.0);
-        let none = ToolInStep { pose: nowhere, earlier: nowhere, change: nowhere, bound, rounded, is_even: false };
+        let none = ToolInStep { pose: nowhere, earlier: nowhere, change: nowhere, bound, is_even: false };
         let mut tools = [none; ToolContacts::MOST];
         for (tool, contact) in tools.iter_mut().zip(&self.tools) {
             let [pose, change] = [0, 3].map(|slot| Pose::of_slots(&values[contact.signal + slot..]));
@@ -130,7 +84,7 @@ impl ToolContacts {
                 None => Bound::Below(pose.rotation.z_axis, pose.rotation.z_axis.dot(pose.at) + reach(DVec3::ZERO)),
             };
             let is_even = matches!(bound, Bound::Below(..)) && change.rotation == DMat3::ZERO;
-            *tool = ToolInStep { pose, earlier, change, bound, rounded: bound.around(self.extent), is_even };
+            *tool = ToolInStep { pose, earlier, change, bound, is_even };
         }
         ContactStep {
             coefficients: IntegrationCoefficients::of(clock),
@@ -155,6 +109,3 @@ impl ToolContacts {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;
