@@ -111,7 +111,7 @@ impl NodeSystem for ToolContacts {
         for ((&row, &mask), values) in rows.zip(touches.values.chunks_exact_mut(touches.numbers.max(1))) {
             let (row, mask) = (row as usize - nodes.first, mask & self.all());
             match &step.springs {
-                Some(springs) if springs.forces == SpringForces::Noted => {
+                Some(springs) if springs.forces.are_noted() => {
                     self.press((step, springs), (row, mask), nodes, values);
                 }
                 // the solver finds them apart
