@@ -2,6 +2,7 @@
 
 use crate::math::noise;
 use serde::{Deserialize, Serialize};
+use twox_hash::XxHash64;
 
 /// A number for each copy of a body.
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
@@ -39,7 +40,7 @@ impl PerCopy {
     pub fn values(&self, name: &str, copies: usize) -> Vec<f64> {
         let steps = (copies.max(2) - 1) as f64;
         let between = |from: f64, to: f64, seed: u64| {
-            let first = hash(name).wrapping_add(hash(&seed.to_string()));
+            let first = XxHash64::oneshot(seed, name.as_bytes());
             (0..copies as u64).map(move |copy| from + (to - from) * noise(first.wrapping_add(copy))).collect()
         };
         match self {
@@ -52,10 +53,4 @@ impl PerCopy {
             Self::Values(values) => values.clone(),
         }
     }
-}
-
-/// A number of a text (FNV-1a, 64 bits).
-fn hash(text: &str) -> u64 {
-    text.bytes()
-        .fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
 }
