@@ -49,6 +49,14 @@ impl Simulation {
         let mut diagnostics = scene.diagnostics();
         let mut world = World::new();
         let known = Known::of(registry, &scene.scene);
+        if scene.scene.follows_path() && options.precision == Precision::F32 {
+            diagnostics
+                .error_at(
+                    "analysis",
+                    "a path by arc length is followed in f64: differences of forces in f32 lead astray",
+                )
+                .note("run it with `--precision f64`; of a program, `Options::precision` is `Precision::F64`");
+        }
         let prepared = prepare(scene, options, &known, &mut world, &mut diagnostics);
         let Some(Prepared { assembly, clock, stability, steps, schedule }) =
             prepared.filter(|_| !diagnostics.has_errors())

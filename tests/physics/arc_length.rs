@@ -230,4 +230,7 @@ fn a_path_ends_after_as_many_points_as_are_wanted_and_is_refused_where_it_has_no
         };
         assert!(told.contains(expected), "{analysis}: {told}");
     }
+    let read = scene_of(&scene("analysis: Static(method: Newton, arc: ())", ""), Path::new("."));
+    let told = Simulation::new(&read, &options(Precision::F32, 1)).err().map_or("nothing".into(), |e| e.to_string());
+    assert!(told.contains("is followed in f64") && told.contains("--precision f64"), "{told}");
 }
