@@ -1,6 +1,6 @@
 //! Attachments inside of parts, and whose tissue goes: held nodes, and both sides of what is glued.
 
-use crate::configurations::{Configuration, configurations, near};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, near};
 use glam::{DMat3, DVec3};
 use sinew::Simulation;
 use sinew::components::DisplacementIncrement;
@@ -144,7 +144,7 @@ fn what_goes_in_a_grasp_is_let_go() {
         attachments: [Grasp(tool: \"forceps\", on: Plane(normal: (0, 0, 1), at: 0.02), closed: Step(start: 0.01, end: 0.15))],
         removal: [(on: Box(min: (0, 0, 0.015), max: (0.01, 0.02, 0.02)), when: At(0.08))],
         integration: (step: 1e-4), output: (energies_every: 0.01))";
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(text);
         simulation.advance_to(0.0795).unwrap();
         assert_eq!(simulation.tool("forceps").unwrap().nodes, 25, "{}", run.name);

@@ -1,6 +1,6 @@
 //! Edges that cross between their nodes.
 
-use crate::configurations::{configurations, near};
+use crate::configurations::{configurations, cpu_and_long_gpu, near};
 use glam::DVec3;
 use sinew::Simulation;
 use sinew::components::DisplacementIncrement;
@@ -36,7 +36,7 @@ fn momentum(simulation: &mut Simulation, body: &str) -> DVec3 {
 /// other; with edges they stay outside, momentum is kept, no energy is made, and they part again.
 #[test]
 fn bars_that_meet_crosswise_with_their_edges_do_not_pass() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         for (edges, friction) in [("false", 0.0), ("true", 0.0), ("true", 0.3)] {
             let top = 0.02 * 2.0_f64.sqrt();
             let mut simulation = run.start(&format!(
@@ -89,6 +89,7 @@ const TURNED: &str = "(duration: 0.04, bodies: {
 /// touch a step earlier or later changes what its body gets by one part in some hundred steps, of a dozen points and
 /// more.
 #[test]
+#[ignore = "long"]
 fn edges_and_faces_on_a_gpu_do_as_on_the_cpu_and_the_same_every_time() {
     let scene = TURNED.replace("CELLS", "4");
     let all = configurations();

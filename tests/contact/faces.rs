@@ -50,11 +50,8 @@ fn is_even(run: &Configuration, elements: &str, cells: (u32, u32)) {
 /// The contact patch test on meshes that do not match (C12), 1.5 % after eight sweeps.
 #[test]
 fn points_of_faces_pass_the_patch_test() {
-    // in software a GPU takes its time
-    for run in configurations().iter().filter(|run| !run.name.starts_with("GPU")) {
-        for elements in ["Tet4", "Hex8"] {
-            is_even(run, elements, (4, 6));
-        }
+    for elements in ["Tet4", "Hex8"] {
+        is_even(&configurations()[0], elements, (4, 6));
     }
 }
 

@@ -1,7 +1,7 @@
 //! Tools that move freely: momentum, energy, rest, and what they share with guided ones.
 
 use crate::bits::{bits_do_not_depend, start};
-use crate::configurations::{configurations, near};
+use crate::configurations::{configurations, cpu_and_long_gpu, near};
 use glam::DVec3;
 use sinew::components::{DisplacementIncrement, Precision};
 use sinew::{Error, Simulation};
@@ -35,7 +35,7 @@ fn momenta(simulation: &mut Simulation) -> (DVec3, DVec3) {
 /// forces and steps, of some hundreds of them.
 #[test]
 fn a_ball_and_a_cube_that_collide_keep_their_momentum_and_make_no_energy() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(HIT);
         let free = simulation.tool("ball").unwrap().free.unwrap();
         let (kinetic, momentum) = (free.kinetic, free.velocity * free.mass);

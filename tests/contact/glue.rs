@@ -1,7 +1,7 @@
 //! Ties and glue: how well they hold, where they break, peeling, momentum, bits.
 
 use crate::bits::{bits_do_not_depend, start};
-use crate::configurations::{configurations, near};
+use crate::configurations::{configurations, cpu_and_long_gpu, near};
 use glam::DVec3;
 use sinew::Simulation;
 use sinew::components::{DisplacementIncrement, Precision};
@@ -26,7 +26,7 @@ pub fn bars(cells: [&str; 2], glue: &str) -> String {
 /// C27: on meshes that match the stress is that of the bars everywhere.
 #[test]
 fn glue_breaks_at_its_strength() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(&bars(["(3, 3, 6)"; 2], ", normal: 200, shear: 400"));
         let mut most = 0.0_f64;
         while simulation.time() < 0.9 && simulation.attachment("glue").unwrap().holds > 0 {
@@ -48,7 +48,7 @@ fn glue_breaks_at_its_strength() {
 /// On meshes that do not match, the finer one first, what is glued stays together, the bars as stiff as one.
 #[test]
 fn what_is_glued_is_one_body() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         for cells in [["(3, 3, 6)", "(2, 2, 4)"], ["(4, 4, 8)", "(2, 2, 4)"]] {
             let mut simulation = run.start(&bars(cells, ""));
             simulation.advance_to(1.0).unwrap();
@@ -97,7 +97,7 @@ fn glue_is_peeled_from_the_end_that_is_pulled() {
             Prescribed(body: \"strip\", on: Plane(normal: (1, 0, 0), at: 0), displacement: (0, 0, 0.012), curve: Smooth(end: 1))],
         attachments: [Glue(bodies: (\"strip\", \"bed\"), normal: 400, shear: 4000)],
         output: (energies_every: 0.1))";
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(text);
         let rest = simulation.rest_positions("strip").unwrap();
         let mut before = 0;
@@ -134,7 +134,7 @@ fn a_tie_holds_up_to_its_strength() {
         constraints: [Fixed(body: \"low\", on: All),
             Prescribed(body: \"up\", on: Plane(normal: (0, 0, 1), at: 0.021), displacement: (0, 0, 0.004), curve: Ramp(end: 1))],
         attachments: [Tie(from: (body: \"up\", at: (0.004, 0.006, 0.011)), to: (body: \"low\", at: (0.004, 0.006, 0.01)), strength: 0.05)])";
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(text);
         let mut most = 0.0_f64;
         while simulation.time() < 1.0 && simulation.attachment("0").unwrap().holds == 1 {
@@ -208,7 +208,7 @@ fn glue_does_not_keep_nodes_from_moving_with_their_patch() {
 #[test]
 fn bits_of_glue_do_not_depend_on_threads_or_pauses() {
     let text =
-        bars(["(6, 6, 12)", "(8, 8, 16)"], ", normal: 60").replace("curve: Smooth(end: 1)", "curve: Ramp(end: 0.3)");
+        bars(["(4, 4, 8)", "(6, 6, 12)"], ", normal: 60").replace("curve: Smooth(end: 1)", "curve: Ramp(end: 0.3)");
     let some_is_off = |simulation: &mut Simulation| {
         let reading = simulation.attachment("glue").unwrap();
         assert!(!reading.broken.is_empty(), "some is off: {reading:?}");

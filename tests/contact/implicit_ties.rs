@@ -131,7 +131,7 @@ fn a_cube_is_grasped_lifted_carried_and_let_go() {
 #[test]
 fn bits_of_attachments_do_not_depend_on_threads_and_pauses() {
     let none: fn(&mut Simulation) = |_| {};
-    bits_do_not_depend(&solved(LIFTED, "0.01"), &["b"], [1.02, 1.3], [none, none]);
+    bits_do_not_depend(&solved(LIFTED, "0.02"), &["b"], [1.02, 1.3], [none, none]);
     let glued = bars(["(3, 3, 6)"; 2], ", normal: 200, shear: 400");
-    bits_do_not_depend(&solved(&glued, "0.01"), &["low", "up"], [0.3, 0.7], [none, none]);
+    bits_do_not_depend(&solved(&glued, "0.02"), &["low", "up"], [0.3, 0.7], [none, none]);
 }

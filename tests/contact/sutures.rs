@@ -1,7 +1,7 @@
 //! Threads between bodies: tension, tearing, knots, momentum, energy, bits.
 
 use crate::bits::{bits_do_not_depend, start};
-use crate::configurations::{configurations, near};
+use crate::configurations::{configurations, cpu_and_long_gpu, near};
 use glam::DVec3;
 use sinew::Simulation;
 use sinew::components::{DisplacementIncrement, Precision};
@@ -35,7 +35,7 @@ pub fn pulled_apart(stiffness: f64, strength: f64) -> String {
 fn a_suture_tears_at_its_strength_and_what_it_stored_is_booked() {
     let (strength, stiffness) = (0.4, 50.0);
     let text = pulled_apart(stiffness, strength);
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(&text);
         let (mut most, mut last) = (0.0_f64, 0.0);
         while simulation.time() < 0.6 {
@@ -107,7 +107,7 @@ fn knots_shorten_a_suture_to_what_they_leave() {
         "constraints: [Fixed(body: \"low\", on: Plane(normal: (0, 0, 1), at: 0))],",
         "stiffness: 40, tighten: 0.008, curve: Smooth(end: 0.5)",
     );
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(&text);
         simulation.advance_to(1.0).unwrap();
         let reading = simulation.attachment("0").err().map(|error| error.to_string());
@@ -150,7 +150,7 @@ fn a_cube_hangs_on_a_suture_at_rest() {
             Fixed(body: \"low\", on: Plane(normal: (1, 0, 0), at: 0), axes: [X, Y])],",
         "stiffness: 20",
     );
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(&text);
         simulation.finish().unwrap();
         let weight = 1000.0 * 8e-6 * 9.81;
@@ -169,7 +169,7 @@ fn bits_of_a_suture_do_not_depend_on_threads_or_pauses() {
         constraints: [Fixed(body: \"low\", on: Plane(normal: (0, 0, 1), at: 0))],",
         "stiffness: 40, strength: 0.12",
     );
-    let text = cubes.replace("(3, 3, 3)", "(9, 9, 9)");
+    let text = cubes.replace("(3, 3, 3)", "(6, 6, 6)");
     let has_torn = |simulation: &mut Simulation| {
         let reading = simulation.attachment("stitch").unwrap();
         assert!(reading.broke_at.is_some(), "it has torn: {reading:?}");

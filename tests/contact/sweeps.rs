@@ -1,7 +1,7 @@
 //! Sweeps of contact and glue are what the plan of a step repeats: on a GPU their kernels are made once, and dispatched
 //! as often as the plan says.
 
-use crate::configurations::configurations;
+use crate::configurations::cpu_and_long_gpu;
 use sinew::backend::device::Device;
 use sinew::explain::Explanation;
 use sinew::systems::Registry;
@@ -47,7 +47,7 @@ fn sweeps_are_listed_once_and_dispatched_as_often_as_the_plan_says() {
         (glued.to_owned(), "glue", 2),
     ] {
         let text = |sweeps: usize| blocks(&what.replace("SWEEPS", &sweeps.to_string()));
-        for run in configurations() {
+        for run in cpu_and_long_gpu() {
             let mut simulations = [1, 5].map(|sweeps| run.start(&text(sweeps)));
             let on_gpu = run.options.backend == BackendChoice::Gpu;
             if on_gpu {

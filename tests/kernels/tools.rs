@@ -71,9 +71,20 @@ fn touch(world: &mut World, (of_grid, several, springs, is_swept): (bool, bool, 
     }
 }
 
+/// All combinations of what a tool can be and how nodes move.
+#[test]
+#[ignore = "long"]
+fn tools_of_all_kinds_push_the_same_nodes_with_the_same_forces() {
+    push_the_same_nodes(0..32);
+}
+
 #[test]
 fn tools_push_the_same_nodes_with_the_same_forces() {
-    for bits in 0..32 {
+    push_the_same_nodes([0, 5, 10, 15, 18, 31]);
+}
+
+fn push_the_same_nodes(combinations: impl IntoIterator<Item = u32>) {
+    for bits in combinations {
         let (of_grid, several, springs) = (bits & 4 == 4, bits & 8 == 8, bits & 16 == 16);
         // whole ways are looked at where nodes go far enough
         let is_swept = bits & 1 == 1 && !springs;

@@ -123,6 +123,7 @@ fn shallow_arch([radius, thickness, length]: [f64; 3], young: f64, share: f64) -
 
 /// The example, to what the theory leaves out where the ends slope by α = .3: α²/2.
 #[test]
+#[ignore = "long"]
 fn an_arch_snaps_where_the_theory_of_shallow_arches_has_it() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/snap.ron");
     let (points, _) = follow(&SceneFile::load(Path::new(path), &[]).unwrap());

@@ -1,6 +1,6 @@
 //! `bound: Auto`: the highest frequency where that saves more than it costs, else what all elements together allow.
 
-use crate::configurations::configurations;
+use crate::configurations::{configurations, cpu_and_long_gpu};
 
 /// A block of hexahedra whose middle layer is thin, under its weight, for so long (s).
 fn block(duration: f64, more: &str) -> String {
@@ -49,7 +49,7 @@ fn what_needs_the_room_below_the_true_limit_keeps_it() {
 /// Elements that leave take their mass with them, and the highest frequency rises above that of the whole.
 #[test]
 fn a_body_that_is_taken_apart_stays_stable() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let more = r#"integration: (bound: Auto), removal: [(on: Sphere(center: (0, 0, 0), radius: 0.05), when: During(start: 0.05, end: 0.8))], output: (energies_every: 0.1)"#;
         let mut simulation = run.start(&block(1.0, more));
         simulation.finish().unwrap_or_else(|error| panic!("{}: {error}", run.name));

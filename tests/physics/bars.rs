@@ -8,7 +8,7 @@
 //! lateral motion held: σ = −ρ c v = −33.7332 Pa, at the other end after L/c = .0296444 s.
 
 use crate::columns::{masses, velocities};
-use crate::configurations::{ELEMENTS, configurations, near};
+use crate::configurations::{ELEMENTS, configurations, cpu_and_long_gpu, near};
 use sinew::Simulation;
 use std::f64::consts::PI;
 
@@ -87,7 +87,7 @@ fn clamped_beam_swings_at_0_2798_hertz() {
 /// Pa .15 Pa from each of three strains, .45 Pa or .9 % together, beside what f64 is allowed.
 #[test]
 fn spinning_bar_bears_its_centrifugal_load() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(
             "(duration: 1, bodies: {\"b\": (mesh: Box(size: (0.1, 0.01, 0.01), cells: (20, 2, 2), elements: Hex8), material: \"m\", spin: (0, 0, 6.283185307))},
             materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e4, poisson: 0.45), prony: (terms: [(alpha: 0.5, tau: 0.006)]))},
@@ -105,7 +105,7 @@ fn spinning_bar_bears_its_centrifugal_load() {
 /// The front rings in the wake of a jump, by 1-D dispersion; means over the plateau do not.
 #[test]
 fn impact_runs_through_the_bar_at_the_speed_of_sound() {
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
         let cells = if elements == "Hex8" { "(80, 1, 1)" } else { "(40, 1, 1)" };
         let mut simulation = run.start(&format!(
             "(duration: 0.05, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.005, 0.005), cells: {cells}, elements: {elements}), material: \"m\", velocity: (-0.01, 0, 0))}},

@@ -1,7 +1,7 @@
 //! Parameters that change while a simulation runs: materials and loads give what they give in a scene that has them
 //! from the start, in the same bits; the step follows; snapshots and going back know of them.
 
-use crate::configurations::{Configuration, ELEMENTS, configurations, scene_of};
+use crate::configurations::{Configuration, ELEMENTS, configurations, cpu_and_long_gpu, scene_of};
 use sinew::glam::DVec3;
 use sinew::{Error, Simulation};
 use std::path::Path;
@@ -172,7 +172,7 @@ fn refused(simulation: &mut Simulation, set: &str, words: &str) {
 #[test]
 fn what_cannot_change_is_refused_and_nothing_has_changed() {
     let further = "integration: (when_unstable: Watch)";
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(&block("Hex8", false, further));
         simulation.advance(20).unwrap();
         for (set, words) in [

@@ -1,6 +1,6 @@
 //! Steps that change during a run (H30): what is kept, and that they change in time.
 
-use crate::configurations::{configurations, near};
+use crate::configurations::{configurations, cpu_and_long_gpu, near};
 use crate::grids::bits;
 use sinew::components::{Clock, Energies};
 use sinew::{BackendChoice, Error, Simulation, Snapshot};
@@ -49,7 +49,7 @@ fn resume_state_of(simulation: &mut Simulation) -> String {
 
 #[test]
 fn what_goes_on_after_the_step_has_changed_gives_the_same_bits() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let text = squeezed("bound: Iterated, when_unstable: Adapt", 0.4, "Hex8");
         let mut whole = run.start(&text);
         whole.advance_to(1.0).unwrap();
@@ -164,7 +164,7 @@ fn relaxed_stress_goes_on_across_changes_of_the_step() {
             prony: (terms: [(alpha: 0.3, tau: 0.1), (alpha: 0.2, tau: 1)], volumetric: [(alpha: 0.2, tau: 0.3)]))},
         constraints: [Prescribed(on: All, gradient: ((0.1, 0.2, 0), (0, 0, 0), (0, 0, 0)), curve: Smooth(end: 0.2))],
         integration: (when_unstable: Watch))"#;
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let force = |simulation: &mut Simulation| simulation.internal_forces("b").unwrap()[0];
         let (mut changed, mut even) = (run.start(text), run.start(text));
         let first = even.time_step();

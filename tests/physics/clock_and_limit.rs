@@ -1,7 +1,7 @@
 //! The clock, and the limit of the time step (H29): .99 of it runs, more is refused, or caught and not handed out as a
 //! result.
 
-use crate::configurations::{configurations, near, scene_of};
+use crate::configurations::{configurations, cpu_and_long_gpu, near, scene_of};
 use sinew::{Error, Simulation};
 use std::path::Path;
 
@@ -29,7 +29,7 @@ fn limit_of_a_cube_is_the_closed_form() {
 
 #[test]
 fn just_below_the_limit_a_free_block_runs_on() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         for cells in [1, 3] {
             let step = format!("step: {:?}", 0.99 * limit(cells));
             let mut simulation = run.start(&scene(cells, &step));
@@ -74,7 +74,7 @@ fn up_to_the_true_limit_of_all_elements_a_block_runs_on_and_not_beyond() {
 
 #[test]
 fn just_above_the_limit_a_free_cube_is_reported_and_no_result() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         for factor in [1.01, 1.1, 2.0] {
             let step = format!("step: {:?}, beyond_stable_step: true", factor * limit(1));
             let mut simulation = run.start(&scene(1, &step));

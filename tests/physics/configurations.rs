@@ -28,6 +28,16 @@ pub fn configurations() -> Vec<Configuration> {
     all
 }
 
+/// The same, where a software GPU takes long: on a GPU only when long tests are asked for (`--include-ignored`).
+pub fn cpu_and_long_gpu() -> Vec<Configuration> {
+    let mut all = configurations();
+    if !std::env::args().any(|argument| argument == "--include-ignored" || argument == "--ignored") {
+        all.retain(|run| run.options.backend == BackendChoice::Cpu);
+        println!("left out: the same on a GPU, which takes long; `cargo test -- --include-ignored` has it");
+    }
+    all
+}
+
 /// Whether built-in systems have kernels.
 const GPU_KERNELS: bool = true;
 

@@ -6,7 +6,7 @@
 //! term.
 
 use crate::columns::{masses, positions, velocities};
-use crate::configurations::{ELEMENTS, configurations, near};
+use crate::configurations::{ELEMENTS, configurations, cpu_and_long_gpu, near};
 use glam::DVec3;
 use sinew::Simulation;
 
@@ -14,7 +14,7 @@ use sinew::Simulation;
 /// n steps round by n eps at most: 1e3·1e-16 in f64; f32 sums displacements with compensation but steps without: n eps.
 #[test]
 fn free_fall_is_exact() {
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
         let mut simulation = run.start(&format!(
             "(duration: 1, bodies: {{\"b\": (mesh: Box(size: (1, 1, 1), cells: (2, 2, 2), elements: {elements}), material: \"m\", velocity: (0.5, 0, 2))}},
             materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
@@ -116,10 +116,10 @@ fn energy_balances() {
         ("fibres", "", "", "fibres: (eta: 2000, direction: Along(1, 1, 0), tension_only: true),"),
     ];
     for (name, constraints, loads, effects) in cases {
-        for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+        for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
             let spin = if name == "fibres" { "velocity: (0.1, 0, 0), spin: (0, 3, 8)" } else { "" };
             let mut simulation = run.start(&format!(
-                "(duration: 0.3, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3), elements: {elements}), material: \"m\", {spin})}},
+                "(duration: 0.2, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3), elements: {elements}), material: \"m\", {spin})}},
                 materials: {{\"m\": (density: 1000, {effects} neo_hookean: Young(young: 3e3, poisson: 0.45))}},
                 constraints: [{constraints}], loads: [{loads}], output: (energies_every: 0.01), integration: (bound: Elements, safety: 0.6))"
             ));
@@ -132,10 +132,10 @@ fn energy_balances() {
             };
             let mut worst: f64 = 0.0;
             for part in 1..=6 {
-                simulation.advance_to(0.3 * f64::from(part) / 6.0).unwrap();
+                simulation.advance_to(0.2 * f64::from(part) / 6.0).unwrap();
                 worst = worst.max(imbalance(&mut simulation, start, name == "viscosity"));
             }
-            near("the end", simulation.time(), 0.3, 0.3, 1e-12);
+            near("the end", simulation.time(), 0.2, 0.2, 1e-12);
             println!("{name}, {}, {elements}: {worst:.2e}", run.name);
             assert!(worst < run.bound(0.01, 0.02), "{name}, {}, {elements}: {worst:e}", run.name);
         }

@@ -1,7 +1,7 @@
 //! Copies of a body go their own ways: each as the body would by itself under its own load and with its own material,
 //! to the rounding of sums in another order (1e-11 of the largest displacement in f64, 1e-4 in f32, after 300 steps).
 
-use crate::configurations::{Configuration, ELEMENTS, configurations};
+use crate::configurations::{Configuration, ELEMENTS, configurations, cpu_and_long_gpu};
 use glam::DVec3;
 use sinew::{Error, Simulation};
 
@@ -107,7 +107,7 @@ const STEPS: &str = "integration: (step: 5e-5),";
 
 #[test]
 fn copies_of_materials_of_their_own_do_what_each_does_by_itself() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         each_goes_as_by_itself(&run, "Tet4", STEPS, run.bound(1e-11, 1e-4));
     }
 }
@@ -126,7 +126,7 @@ fn copies_of_materials_of_their_own_do_so_with_all_elements() {
 /// leaves another rest.
 #[test]
 fn copies_of_materials_of_their_own_step_implicitly() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let solver = "solver: Implicit(scheme: Euler, step: 0.01, tolerance: 1e-8),";
         each_goes_as_by_itself(&run, "Hex8", solver, run.bound(1e-5, 1e-3));
     }
@@ -135,7 +135,7 @@ fn copies_of_materials_of_their_own_step_implicitly() {
 /// The stable step is that of the stiffest copy by itself, whichever copy that is.
 #[test]
 fn the_stable_step_is_that_of_the_stiffest_copy() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let steps = PARAMETERS.map(|parameters| started(&run, "Tet4", &of_parameters(parameters, "", "")).time_step());
         let copies = format!("copies: 3, {}", per_copy());
         let of_all = started(&run, "Tet4", &of_parameters([5e3, 1.0, 1.0, 1.0], &copies, "")).time_step();
@@ -148,7 +148,7 @@ fn the_stable_step_is_that_of_the_stiffest_copy() {
 /// Energies of all copies are the sum of each one's; so is what guards see of them.
 #[test]
 fn energies_are_those_of_each_copy_together() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let text = |parameters, body: &str| {
             let scene = of_parameters(parameters, body, "integration: (step: 5e-5), guards: (every: 50),");
             scene.replace("(duration: 10,", "(duration: 10, output: (energies_every: 0.005),")
@@ -169,7 +169,7 @@ fn energies_are_those_of_each_copy_together() {
 /// What differs from copy to copy may change while it runs, and is then as if it had been so: in the same bits.
 #[test]
 fn parameters_of_copies_change_while_it_runs() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let copies = format!("copies: 3, {}", per_copy());
         let text = of_parameters([5e3, 1.0, 1.0, 1.0], &copies, "integration: (step: 2e-5, bound: Elements),");
         let other = "Values([9000, 2000, 4000])";
@@ -203,7 +203,7 @@ fn parameters_of_copies_change_while_it_runs() {
 #[test]
 fn loads_and_motion_differ_from_copy_to_copy() {
     const FACTORS: [f64; 3] = [1.0, -0.5, 2.0];
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         for elements in ["Tet4", "Tet10"] {
             let end = |copies: &str, factors: [f64; 2], per_copy: &str| {
                 let [pressure, moved] = [200.0 * factors[0], 1e-3 * factors[1]];
@@ -268,7 +268,7 @@ fn draws_are_the_same_in_every_run_and_independent() {
 /// exponentially as all are pulled alike.
 #[test]
 fn the_step_follows_the_copy_that_stiffens_most() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let [followed, without] = ["8", "0.1"].map(|k2| {
             let mut simulation = run.start(&format!(
                 "(duration: 1, bodies: {{\"b\": (mesh: Box(size: (0.02, 0.02, 0.04), cells: (2, 2, 4), elements: Tet4),

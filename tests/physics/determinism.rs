@@ -3,7 +3,7 @@
 //! Bounds: a shuffled mesh sums the same forces in another order: eps a step, 60 steps, moduli 1e4: 1e-12 of the
 //! displacement in f64, 1e-4 in f32; f32 against f64 likewise 1e-4.
 
-use crate::configurations::{Configuration, configurations};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu};
 use crate::grids::{Grid, bits, grid};
 use crate::random::Random;
 use glam::DVec3;
@@ -68,7 +68,7 @@ fn bits_are_the_same_from_run_to_run_and_for_any_number_of_threads() {
         };
         let one = of(1);
         assert!(one.2 > 10, "elements must be removed for this to say something: {}", one.2);
-        for threads in [1, 2, 3, 5, 16] {
+        for threads in [1, 3, 16] {
             let other = of(threads);
             assert!(one == other, "{precision:?}, {threads} threads: not the same bits; {} and {}", one.1, other.1);
         }
@@ -232,7 +232,7 @@ fn f32_moves_as_f64_does() {
             simulation.advance(60).unwrap();
             (run.name, simulation.displacements("b").unwrap())
         };
-        let all: Vec<(&str, Vec<DVec3>)> = configurations().iter().map(of).collect();
+        let all: Vec<(&str, Vec<DVec3>)> = cpu_and_long_gpu().iter().map(of).collect();
         for (name, displacements) in &all[1..] {
             let error = largest_difference(&all[0].1, displacements);
             println!("{name}: {error:.1e}");

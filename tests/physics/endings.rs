@@ -1,6 +1,6 @@
 //! Scenes that once ended untruly; each stands in `tests/endings`.
 
-use crate::configurations::{Configuration, configurations};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu};
 use sinew::{Error, SceneFile, Simulation};
 
 fn scene(name: &str, sets: &[&str]) -> SceneFile {
@@ -71,7 +71,7 @@ fn pulse_between_steps_is_not_lost() {
 /// with it is counted.
 #[test]
 fn flattened_elements_are_removed_and_the_run_goes_on() {
-    for configuration in configurations() {
+    for configuration in cpu_and_long_gpu() {
         let (mut simulation, ended) = run("inversion_remove_breaks_down", &[], &configuration);
         ended.unwrap_or_else(|error| panic!("{}: {error}", configuration.name));
         let summary = simulation.summary("finished").unwrap();

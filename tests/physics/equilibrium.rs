@@ -4,7 +4,7 @@
 //! same λ everywhere, exact on any mesh. Bar stretched to λ with its sides free (closed form 1): t, σ and P at λ = 1.5
 //! and 0.7. A residual of 1e-6 leaves displacements within some 1e-5 of rest, one of 1e-5 (f32) within 1e-4.
 
-use crate::configurations::{Configuration, configurations, near, scene_of};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, near, scene_of};
 use crate::grids::grid;
 use crate::statics::{first_stress, sag_under_weight};
 use bevy_ecs::prelude::*;
@@ -70,7 +70,7 @@ fn stretch_under(pressure: f64) -> f64 {
 
 #[test]
 fn cantilever_rests_where_timoshenko_says_and_its_reaction_balances_the_load() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(&cantilever("Static()", 1000.0));
         rest(run.name, &mut simulation);
         let tip = simulation.probe("tip").unwrap()[2];
@@ -85,7 +85,7 @@ fn cantilever_rests_where_timoshenko_says_and_its_reaction_balances_the_load() {
 
 #[test]
 fn column_rests_where_its_weight_and_its_law_say() {
-    for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
         let load = "Gravity(acceleration: (0, 0, -9.81))";
         let mesh = format!("Box(size: (0.01, 0.01, 0.1), cells: (2, 2, 20), elements: {elements})");
         let mut simulation = run.start(&column(&mesh, "", MATERIAL, load));
@@ -99,7 +99,7 @@ fn column_rests_where_its_weight_and_its_law_say() {
 #[test]
 fn pressure_and_dead_load_squeeze_a_column_by_the_same_exact_amount() {
     let expected = 0.1 * (1.0 - stretch_under(3000.0));
-    for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
         for load in ["Pressure(on: TOP, pressure: 3000)", "Traction(on: TOP, traction: (0, 0, -3000))"] {
             let load = load.replace("TOP", "Surface(normal: (0, 0, 1))");
             let mut simulation = run.start(&column(&box_of(elements, 10), "", MATERIAL, &load));
@@ -112,7 +112,7 @@ fn pressure_and_dead_load_squeeze_a_column_by_the_same_exact_amount() {
 
 #[test]
 fn stretched_and_squeezed_bars_pull_as_the_law_says() {
-    for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
         for (stretch, side, stress) in [(1.5, 0.8363969, 1035.4829), (0.7, 1.1756426, -1347.7943)] {
             let mut simulation = run.start(&format!(
                 "(duration: 1, analysis: Static(),
@@ -182,7 +182,7 @@ fn interface_of_stiff_and_soft_goes_where_the_series_says() {
 
 #[test]
 fn density_changes_nothing_where_nothing_weighs() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let tip = |density: f64| {
             let mut simulation = run.start(&cantilever("Static()", density));
             (rest(run.name, &mut simulation), simulation.probe("tip").unwrap()[2])
@@ -196,7 +196,7 @@ fn density_changes_nothing_where_nothing_weighs() {
 /// What is pushed too suddenly is taken back; the way does not show in the end.
 #[test]
 fn block_squeezed_by_sixty_percent_is_the_same_at_any_pace() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let squeezed = |more: &str| {
             let mut simulation = run.start(&format!(
                 "(duration: 1, analysis: Static({more}),

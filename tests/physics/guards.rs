@@ -1,7 +1,7 @@
 //! The guards: samples see what energies and fields say, limits end a run and warn, and nothing that is no number is
 //! found late or written.
 
-use crate::configurations::{configurations, scene_of};
+use crate::configurations::{configurations, cpu_and_long_gpu, scene_of};
 use sinew::bevy_ecs::prelude::*;
 use sinew::components::*;
 use sinew::observation::{HOST_GUARD_STEPS, sample};
@@ -65,7 +65,7 @@ fn samples_see_the_energies_and_the_most_squeezed_element() {
 fn work_against_internal_forces_is_counted_without_being_asked_for() {
     let moved =
         "Prescribed(on: Set(\"z1\"), displacement: (0.01, 0, 0.01), rotation: (0, 0, 20), curve: Smooth(end: 0.2)), ";
-    for (run, moved) in configurations().iter().flat_map(|run| ["", moved].map(|moved| (run, moved))) {
+    for (run, moved) in cpu_and_long_gpu().iter().flat_map(|run| ["", moved].map(|moved| (run, moved))) {
         let of = |output: &str| {
             let further = format!(
                 "loads: [Gravity(acceleration: (0, 0, -9.81))], constraints: [{moved} Fixed(on: Set(\"z0\"))], {output}"
@@ -114,7 +114,7 @@ fn broken(result: Result<(), Error>) -> Box<Instability> {
 #[test]
 fn energy_from_nothing_is_warned_of_and_ends_the_run_at_the_limits_of_the_scene() {
     let lenient = "guards: (every: 8, energy: (stop: 1e3)),";
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         for (limits, ends) in [("", true), (lenient, false), ("guards: (off: [Energy]),", false)] {
             let mut simulation = run.start(&scene("Hex8", "", limits));
             simulation.advance(30).unwrap();
@@ -313,7 +313,7 @@ fn last_states_before_a_breakdown_are_written_and_can_be_gone_on_from() {
 /// gets back what it had, and a kinematic law has no springs.
 #[test]
 fn energy_that_springs_of_contact_make_is_told_of() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let warned = |law: &str, begins: f64, velocity: f64| {
             let text = format!(
                 "(duration: 1, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2), elements: Hex8),

@@ -2,7 +2,7 @@
 //!
 //! Volumes are whole cells of 1 m³, masses 1000 kg each: both to 1e-9 (f64) and 1e-4 (f32).
 
-use crate::configurations::{ELEMENTS, configurations, near, scene_of};
+use crate::configurations::{ELEMENTS, configurations, cpu_and_long_gpu, near, scene_of};
 use glam::DVec3;
 use sinew::components::DisplacementIncrement;
 use sinew::{Options, Simulation};
@@ -64,7 +64,7 @@ fn islands_below_a_crumb_go_at_once_and_count_as_taken_in() {
 /// goes at .22 s and not before.
 #[test]
 fn a_tool_catches_up_with_the_crumbs_it_took() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(&cut("Hex8", "reach: 1.9, rate: 10, crumb: 1.01"));
         simulation.advance(208).unwrap();
         near(&format!("{}: before", run.name), gone(&mut simulation), 3.0, 1.0, 1e-4);
@@ -78,7 +78,7 @@ fn a_tool_catches_up_with_the_crumbs_it_took() {
 /// 4 mean elements are a crumb where the scene does not say.
 #[test]
 fn a_crumb_is_four_mean_elements_where_nothing_is_said() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         for (cells, crumb) in [("(6, 1, 1)", true), ("(6, 3, 2)", false)] {
             // an island of one cell, or of six
             let scene = cut("Hex8", "reach: 1.9, rate: 1e-9").replace("cells: (6, 1, 1)", &format!("cells: {cells}"));
@@ -93,7 +93,7 @@ fn a_crumb_is_four_mean_elements_where_nothing_is_said() {
 /// Total momentum: that of what moves and what went with elements.
 #[test]
 fn momentum_that_goes_with_elements_is_booked() {
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
         let scene = cut(elements, "reach: 1.9, rate: 1e-9, crumb: 1.01")
             .replace("constraints: [Fixed(on: Plane(normal: (1, 0, 0), at: 0))],", "")
             .replace("material: \"m\")", "material: \"m\", velocity: (0.3, -0.1, 0.2), spin: (0, 0, 0.2))")
@@ -135,7 +135,7 @@ fn steps(simulation: &mut Simulation) -> Vec<DVec3> {
 /// before; elsewhere it may be stretched as it likes.
 #[test]
 fn a_threshold_takes_what_is_stretched_in_the_tool() {
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
         // uniaxial strain: the stretch is 1 + t, the energy density of Young(3e3, 0) with λ = 0, μ = 1500 exceeds 100
         // J/m³ at a stretch between 1.2 and 1.4
         for (threshold, before, after) in [("StretchAbove(1.3)", 0.27, 0.33), ("EnergyDensityAbove(100)", 0.2, 0.4)] {
@@ -169,7 +169,7 @@ fn a_threshold_takes_what_is_stretched_in_the_tool() {
 /// Crumbs and thresholds know nothing that a snapshot lacks.
 #[test]
 fn bits_with_crumbs_do_not_depend_on_how_steps_are_taken() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let of = |threads: usize, resume: Option<u64>| {
             let scene =
                 cut("Tet4", "reach: 1.9, rate: 10, crumb: 1.01").replace("cells: (6, 1, 1)", "cells: (12, 2, 2)");
@@ -207,7 +207,8 @@ fn bits_with_crumbs_do_not_depend_on_how_steps_are_taken() {
 fn what_is_bared_beside_a_tool_gets_no_kick_and_is_touched_at_once() {
     // quadratic tetrahedra have nodes in the middle of faces, where the rod is
     let corners_only = || ELEMENTS.into_iter().filter(|elements| *elements != "Tet10");
-    for (run, elements) in configurations().iter().flat_map(|run| corners_only().map(move |elements| (run, elements))) {
+    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| corners_only().map(move |elements| (run, elements)))
+    {
         let mut simulation = run.start(&format!(
             "(duration: 0.3, bodies: {{\"b\": (mesh: Box(size: (0.05, 0.05, 0.03), cells: (5, 5, 3), elements: {elements}), material: \"m\")}},
             materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.4), damping: 20)}},

@@ -1,7 +1,7 @@
 //! Stiffness of forces on nodes, whoever brings them, counts for the stable step: of a program's own systems, and of
 //! loads in WGSL that an input makes stiffer while they act.
 
-use crate::configurations::{Configuration, configurations, near, scene_of};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, near, scene_of};
 use sinew::backend::cpu::{Cpu, NodeColumns};
 use sinew::components::*;
 use sinew::glam::DVec3;
@@ -109,7 +109,7 @@ fn scene_in_wgsl(further: &str) -> (tempfile::TempDir, String) {
 #[test]
 fn an_input_that_makes_a_load_stiffer_makes_the_step_smaller() {
     let (folder, scene) = scene_in_wgsl("");
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start_in(&scene, folder.path());
         simulation.advance(40).unwrap();
         let first = simulation.time_step();

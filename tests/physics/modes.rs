@@ -35,7 +35,7 @@ fn axial_frequencies_of_a_held_bar_are_those_of_the_wave_equation() {
 /// 1 and 8 %.
 #[test]
 fn bending_frequencies_come_in_pairs() {
-    let text = scene("(40, 4, 4)", "Hex8", "Fixed(on: Plane(normal: (1, 0, 0), at: 0))");
+    let text = scene("(30, 3, 3)", "Hex8", "Fixed(on: Plane(normal: (1, 0, 0), at: 0))");
     let mut simulation = configurations()[0].start(&text);
     let modes = simulation.modes(4).unwrap();
     let frequency = |number: usize| modes[number].frequency;
@@ -45,7 +45,7 @@ fn bending_frequencies_come_in_pairs() {
     near("first bending", frequency(0), 0.27980, 0.27980, 0.03);
     near("second bending", frequency(2), 1.75345, 1.75345, 0.12);
     let tip = modes[0].shapes["b"].iter().map(|u| u.length()).fold(0.0, f64::max);
-    assert_eq!(tip, 1.0);
+    near("the largest", tip, 1.0, 1.0, 1e-12);
 }
 
 #[test]

@@ -4,7 +4,7 @@
 //! Bounds: files hold f32, 6e-8 of a number each; displacements in f32 are rounded, and strains of order .1 lose a
 //! digit: 1e-6 in f64, 2e-5 in f32. A search for rest ends at 1e-6 (f32: 1e-5) of the forces.
 
-use crate::configurations::{ELEMENTS, configurations, near};
+use crate::configurations::{ELEMENTS, configurations, cpu_and_long_gpu, near};
 use crate::frames::{Frame, run_into};
 
 const STRETCHES: [f64; 3] = [1.2, 0.9, 1.1];
@@ -38,7 +38,7 @@ fn scene(elements: &str, more: &str) -> String {
 #[test]
 fn fields_of_a_homogeneous_deformation_are_those_of_the_formulas() {
     let place = tempfile::tempdir().unwrap();
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         for elements in ELEMENTS {
             let mut simulation = run.start(&scene(elements, ""));
             run_into(&mut simulation, place.path());

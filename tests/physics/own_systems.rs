@@ -4,7 +4,7 @@
 //! Bounds: the same sums of the same products in the run's precision: rounding of a few hundred steps, 1e-12 in f64,
 //! 1e-5 in f32.
 
-use crate::configurations::{configurations, near};
+use crate::configurations::{configurations, cpu_and_long_gpu, near};
 use sinew::glam::DVec3;
 use sinew::systems::Registry;
 use sinew::{BackendChoice, Options, Simulation};
@@ -57,7 +57,7 @@ fn gravity_and_nodal_forces_written_in_wgsl_are_those_of_the_engine() {
     let own = bar(&format!(
         "systems: {{\"fall\": (file: \"fall.wgsl\", {curve}), \"push\": (file: \"push.wgsl\", body: \"b\", {on})}}"
     ));
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let [found, expected] = [&own, &built_in].map(|text| {
             let mut simulation = run.start_in(text, folder.path());
             simulation.advance(200).unwrap_or_else(|error| panic!("{}: {error}", run.name));
@@ -172,7 +172,7 @@ const GUSTS: &str = "systems: {
 #[test]
 fn a_shared_pass_changes_nothing_whatever_the_number_of_threads() {
     let folder = folder(&[("fall.wgsl", FALL), ("drag.wgsl", DRAG)]);
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let end = |fuse: bool, threads: usize| {
             let file = crate::configurations::scene_of(&bar(&format!("{GUSTS} fuse: {fuse}")), folder.path());
             let mut simulation = Simulation::new(&file, &Options { threads, ..run.options.clone() }).unwrap();
@@ -194,7 +194,7 @@ fn a_shared_pass_changes_nothing_whatever_the_number_of_threads() {
 fn a_run_goes_on_from_a_snapshot_to_the_bit_and_not_with_another_text() {
     let (folder, other) = (folder(&[("fall.wgsl", FALL), ("drag.wgsl", DRAG)]), folder(&[("drag.wgsl", DRAG)]));
     std::fs::write(other.path().join("fall.wgsl"), FALL.replace("* axis", "* axis * 1.5")).unwrap();
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let text = bar(GUSTS);
         let mut whole = run.start_in(&text, folder.path());
         whole.advance(60).unwrap();
@@ -252,7 +252,7 @@ fn a_body_comes_to_rest_under_a_load_of_the_scene() {
         "fn fall(node: Node) -> vec3f { return node.curve * vec3f(0, 0, -1) * node.mass + 1e9 * node.velocity; }",
     )]);
     let at_rest = |more: &str| bar(more).replace("integration: (step: 0.002),", "analysis: Static(at: 1),");
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let [found, expected] =
             ["systems: {\"fall\": (file: \"fall.wgsl\")}", "loads: [Gravity(acceleration: (0, 0, -1))]"].map(|load| {
                 let mut simulation = run.start_in(&at_rest(load), folder.path());
@@ -269,7 +269,7 @@ fn a_body_comes_to_rest_under_a_load_of_the_scene() {
 #[test]
 fn work_of_a_load_is_booked_as_that_of_external_forces() {
     let folder = folder(&[("fall.wgsl", FALL), ("drag.wgsl", DRAG)]);
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let text = bar(&format!("{GUSTS} output: (energies_every: 0.01), guards: (every: 16)"));
         let mut simulation = run.start_in(&text, folder.path());
         simulation.advance(200).unwrap_or_else(|error| panic!("{}: {error}", run.name));

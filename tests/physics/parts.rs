@@ -1,7 +1,7 @@
 //! A part that is turned and moved does what it does unturned, turned: meshes, selections, fibres, loads, motions of
 //! nodes, tools, starts and probes are all placed alike.
 
-use crate::configurations::{Configuration, configurations, near};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, near};
 use glam::{DMat3, DVec3};
 use sinew::Simulation;
 
@@ -53,7 +53,7 @@ fn end(run: &Configuration, scene: &str) -> Simulation {
 
 #[test]
 fn a_part_that_is_not_placed_gives_the_bits_of_the_scene_without_parts() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let (mut alone, mut part) = (end(&run, &alone()), end(&run, &placed("")));
         assert_eq!(alone.displacements("b").unwrap(), part.displacements("p.b").unwrap(), "{}", run.name);
         assert_eq!(alone.tool("t").unwrap().force, part.tool("p.t").unwrap().force, "{}", run.name);
@@ -65,7 +65,7 @@ fn a_part_that_is_turned_and_moved_moves_turned() {
     let (rotate, translate) = (DVec3::new(40.0, -70.0, 130.0), DVec3::new(0.02, -0.01, 0.03));
     let turn = [DMat3::from_rotation_z, DMat3::from_rotation_y, DMat3::from_rotation_x];
     let turn = turn[0](rotate.z.to_radians()) * turn[1](rotate.y.to_radians()) * turn[2](rotate.x.to_radians());
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let placement = format!(
             "rotate: {:?}, translate: {:?}",
             <(f64, f64, f64)>::from(rotate),

@@ -1,6 +1,6 @@
 //! Tools that turn about a point: a shaft through a trocar.
 
-use crate::configurations::{configurations, near, scene_of};
+use crate::configurations::{cpu_and_long_gpu, near, scene_of};
 use glam::{DQuat, DVec3};
 use sinew::assembly::motion;
 
@@ -74,7 +74,7 @@ fn tissue_feels_a_shaft_that_turns_about_its_pivot() {
         })
         .collect();
     let by_hand = scene(&format!("path: [{}]", places.join(", ")));
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let forces = [through_a_pivot(""), by_hand.clone()].map(|scene| {
             let mut simulation = run.start(&scene);
             simulation.advance_to(0.15).unwrap();

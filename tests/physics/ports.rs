@@ -1,6 +1,6 @@
 //! Tools that hands move: where they go, what comes back, and that a run is the same whenever it is replayed.
 
-use crate::configurations::{Configuration, configurations, near, scene_of};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, near, scene_of};
 use glam::{DQuat, DVec3};
 use sinew::port::{DevicePose, Touch};
 use sinew::{InputRecording, Options, Simulation};
@@ -85,7 +85,7 @@ fn a_tool_goes_where_the_hand_is_no_faster_than_its_port_allows() {
 /// The mean over a batch is that of what each step felt.
 #[test]
 fn a_touch_is_the_mean_of_what_the_tool_felt() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(&above("speed: 0.2"));
         let mut port = simulation.open_port("hand").unwrap();
         let (mut sum, mut steps, mut seen, mut touched) = (DVec3::ZERO, 0.0, 0, 0);
@@ -146,7 +146,7 @@ fn a_proxy_and_tissue_are_two_springs_in_series() {
 /// The stiffness along the normal: of a plate on a bar without Poisson's effect it is E A/L.
 #[test]
 fn the_stiffness_told_is_that_of_a_bar() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(
             "(duration: 1, bodies: {\"b\": (mesh: Box(size: (0.01, 0.01, 0.01), cells: (2, 2, 2)), material: \"m\")},
             materials: {\"m\": (density: 1000, neo_hookean: Young(young: 1e5, poisson: 0), damping: 200)},
@@ -171,7 +171,7 @@ fn the_stiffness_told_is_that_of_a_bar() {
 
 #[test]
 fn a_port_that_nobody_feeds_leaves_its_tool_and_is_told() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         for opened in [false, true] {
             let mut simulation = run.start(&above(PROXY));
             let mut port = opened.then(|| simulation.open_port("hand").unwrap());
@@ -220,7 +220,7 @@ fn feed(simulation: &mut Simulation, steps: u64, at_once: u64) -> Vec<Touch> {
 /// threads, from the start or from a snapshot within a batch.
 #[test]
 fn a_replay_has_the_same_bits() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let start = |options: &Options| Simulation::new(&scene_of(&above(PROXY), Path::new(".")), options).unwrap();
         let mut first = start(&run.options);
         first.record_inputs();
@@ -288,7 +288,7 @@ fn refusals(run: &Configuration, simulation: &mut Simulation, late: &InputRecord
 /// Both ways to the same place: a device's rounding is the only difference.
 #[test]
 fn backends_agree_on_what_a_hand_does() {
-    let mut all = configurations().into_iter().map(|run| {
+    let mut all = cpu_and_long_gpu().into_iter().map(|run| {
         let mut simulation = run.start(&above(PROXY));
         (run.name, feed(&mut simulation, 300, 10))
     });

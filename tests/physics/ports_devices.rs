@@ -1,7 +1,7 @@
 //! Devices at ports, without hardware: a mass that a hand's spring leads and a virtual coupling holds back, and threads
 //! that run beside the engine.
 
-use crate::configurations::{configurations, near};
+use crate::configurations::{configurations, cpu_and_long_gpu, near};
 use crate::ports::{above, hand};
 use glam::DVec3;
 use sinew::Simulation;
@@ -116,7 +116,7 @@ fn a_coupled_device_is_passive() {
 /// A thread a thousand times a second beside a busy engine: whatever it gets is whole and in order.
 #[test]
 fn a_device_in_its_own_thread_gets_whole_touches_in_order() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(&above("speed: 0.3, every: 5e-4"));
         let mut port = simulation.open_port("hand").unwrap();
         let done = AtomicBool::new(false);
@@ -154,7 +154,7 @@ fn a_device_in_its_own_thread_gets_whole_touches_in_order() {
 /// The engine stands still for a second: the hand is let go, without a jump.
 #[test]
 fn while_the_engine_pauses_the_force_goes_away() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(&above("speed: 0.3"));
         let mut port = simulation.open_port("hand").unwrap();
         let start = DVec3::new(0.01, 0.01, 0.0175);
@@ -185,7 +185,7 @@ fn while_the_engine_pauses_the_force_goes_away() {
 /// At the pace of life a run takes as long as it lasts, or longer, and has the same bits.
 #[test]
 fn a_run_in_real_time_waits_for_life_and_has_the_same_bits() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let of = |pace: &str| {
             let mut simulation = run.start(&above("speed: 0.3").replacen("(duration", &format!("({pace} duration"), 1));
             let started = Instant::now();

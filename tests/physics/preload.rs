@@ -7,7 +7,7 @@
 //! the other side, the slowest motion's end twice as far as the mean. Its energy is the square of that: 1e-9 and 1e-7
 //! of the strain energy.
 
-use crate::configurations::{Configuration, ELEMENTS, configurations, near, scene_of};
+use crate::configurations::{Configuration, ELEMENTS, configurations, cpu_and_long_gpu, near, scene_of};
 use crate::grids::bits;
 use sinew::{Error, Simulation, Snapshot};
 use std::path::Path;
@@ -45,7 +45,7 @@ fn error_of(run: &Configuration, text: &str) -> (Simulation, String) {
 #[test]
 fn bar_under_its_weight_starts_where_the_closed_form_says_and_stays() {
     let (length, young, gravity) = (0.1, 3e3, 9.81e-4);
-    for (run, elements) in configurations().iter().flat_map(|run| ["Tet4", "Hex8"].map(|e| (run, e))) {
+    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ["Tet4", "Hex8"].map(|e| (run, e))) {
         let mut simulation = run.start(&format!(
             "(duration: 1, start: Equilibrium(),
             bodies: {{\"b\": (mesh: Box(size: (0.01, 0.01, 0.1), cells: (2, 2, 10), elements: {elements}), material: \"m\")}},
@@ -114,7 +114,7 @@ fn viscous_block_with_fibres_starts_where_the_static_analysis_ends_and_stays() {
 fn removal_begins_with_the_motion_and_snapshots_are_gone_on_from_without_another_way_to_rest() {
     let removal = "removal: [(on: Box(min: (0.06, 0, 0.03), max: (0.1, 0.1, 0.1)), when: At(0.02))],
         output: (energies_every: 0.01), integration: (step: 5e-4)";
-    for (run, elements) in configurations().iter().flat_map(|run| ["Tet4NodalPressure", "Hex8"].map(|e| (run, e))) {
+    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ["Tet4NodalPressure", "Hex8"].map(|e| (run, e))) {
         let what = format!("{}, {elements}", run.name);
         let text = block(elements, "start: Equilibrium(),", "", removal);
         let mut whole = run.start(&text);
@@ -158,7 +158,7 @@ fn energy_balances_from_the_start() {
 
 #[test]
 fn where_there_is_no_equilibrium_no_step_is_taken() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let (mut simulation, error) = error_of(&run, &block("Hex8", "start: Equilibrium(max_steps: 120),", "", ""));
         assert!(error.contains("the motion cannot begin") && error.contains("`tolerance` of `start`"), "{error}");
         assert_eq!(simulation.step_count(), 0);

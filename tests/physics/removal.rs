@@ -5,7 +5,7 @@
 //! rounding (1e-10, 1e-4 in f32).
 
 use crate::columns::{external_forces, masses, velocities};
-use crate::configurations::{Configuration, ELEMENTS, configurations, near};
+use crate::configurations::{Configuration, ELEMENTS, configurations, cpu_and_long_gpu, near};
 use glam::DVec3;
 use sinew::Simulation;
 
@@ -133,7 +133,7 @@ fn island_falls_with_exactly_g_and_mass_is_booked() {
 
 #[test]
 fn nodes_without_elements_are_parked() {
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
         let rest = "loads: [Gravity(acceleration: (0, 0, -9.81)), NodalForce(on: All, force: (1, 0, 0))],
             removal: [(on: Box(min: (4, 0, 0), max: (6, 1, 1)), when: At(0.05))]";
         let mut simulation = bar(run, elements, rest);
@@ -257,7 +257,7 @@ fn work_on_mass_that_is_gone_stays_booked() {
 
 #[test]
 fn a_body_of_which_everything_is_removed_is_no_crash() {
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
         let rest = "loads: [Gravity(acceleration: (0, 0, -9.81)), Pressure(on: Surface(), pressure: 3)], removal: [(when: At(0.05))],
             probes: {\"stress\": (what: Stress, on: All), \"u\": (what: Displacement, on: All)}";
         let mut simulation = bar(run, elements, rest);

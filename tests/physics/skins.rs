@@ -1,6 +1,6 @@
 //! Skins go with their bodies: on every backend, when elements go, and from a snapshot on.
 
-use crate::configurations::{Configuration, configurations, near};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, near};
 use glam::{DMat3, DVec3};
 use sinew::scene::{SceneFile, validate};
 use sinew::tools::Triangles;
@@ -48,7 +48,7 @@ const AFFINE: &str = "constraints: [Prescribed(on: All, displacement: (1e-3, 0, 
 #[test]
 fn a_skin_goes_where_an_affine_motion_takes_it() {
     let gradient = DMat3::from_cols(DVec3::new(0.1, 0.0, 0.05), DVec3::new(0.2, -0.1, 0.0), DVec3::new(0.0, 0.1, 0.2));
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         for elements in ["Tet4", "Hex8", "Wedge6", "Tet10"] {
             let mut simulation = start(&run, &scene(elements, AFFINE));
             let before = simulation.skin("b").unwrap();

@@ -1,6 +1,6 @@
 //! Snapshots: what goes on from one gives the same bits; what is damaged or foreign is refused with the reason.
 
-use crate::configurations::{Configuration, configurations, scene_of};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, scene_of};
 use crate::grids::bits;
 use proptest::prelude::*;
 use sinew::bevy_ecs;
@@ -34,7 +34,7 @@ fn all_of(simulation: &mut Simulation) -> (Vec<[u64; 3]>, String, usize) {
 
 #[test]
 fn what_goes_on_from_a_snapshot_gives_the_same_bits() {
-    for (run, elements) in configurations().iter().flat_map(|run| ["Tet4NodalPressure", "Hex8"].map(|e| (run, e))) {
+    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ["Tet4NodalPressure", "Hex8"].map(|e| (run, e))) {
         let text = scene(elements, "");
         let mut whole = run.start(&text);
         whole.advance(47).unwrap();
@@ -79,7 +79,7 @@ fn blow(mut wind: ResMut<Wind>, mut bodies: Query<(&mut ExternalForce, &mut Cons
 
 #[test]
 fn state_of_custom_systems_goes_along_where_they_declare_one() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let text = scene("Hex8", "").replace("energies_every: 0.01", "").replace(
             "integration:",
             "schedule: [\"boundary\", \"element_forces\", \"gather\", \"gravity\", \"pressure\", \"wind\", \"integrate\",

@@ -8,11 +8,11 @@
 //! Tetrahedra weigh on nodes of one height differently (corners have 1 to 6 of them): within a cell's height h they sag
 //! by up to ρ g h²/(2M) = (h/L)² u = 2.5e-3 u more or less, which cancels over a layer but for second order: 1e-4 of u.
 
-use crate::configurations::{ELEMENTS, configurations, near};
+use crate::configurations::{ELEMENTS, configurations, cpu_and_long_gpu, near};
 
 #[test]
 fn cantilever_bends_by_what_timoshenko_says() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(
             "(duration: 9, bodies: {\"b\": (mesh: Box(size: (0.1, 0.01, 0.01), cells: (10, 1, 1), elements: Hex8), material: \"m\")},
             materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 3.5)},

@@ -6,7 +6,7 @@
 //! damping stress is that of the last step, so the amplitude falls by √(1 − βω²Δt) a step, not e^(−βω²Δt/2): ξ is
 //! larger by a share βω²Δt/4 at most, 1e-3 here. Its stable step is Δt = (2/ω)(√(1 + ξ²) − ξ) for the largest ω.
 
-use crate::configurations::{Configuration, ELEMENTS, configurations, near};
+use crate::configurations::{Configuration, ELEMENTS, configurations, cpu_and_long_gpu, near};
 use crate::grids::bits;
 use sinew::{Simulation, Snapshot};
 use std::f64::consts::PI;
@@ -102,7 +102,7 @@ fn modes_decay_in_proportion_to_their_frequencies() {
 #[test]
 fn stable_step_is_where_the_closed_form_says() {
     for beta in [2e-4, 2e-3, 2e-2] {
-        for run in configurations() {
+        for run in cpu_and_long_gpu() {
             let step =
                 |share: f64| format!("integration: (step: {:e}, beyond_stable_step: true),", share * limit(beta));
             let mut stable = run.start(&bar("Hex8", beta, &step(0.98)));
@@ -122,7 +122,7 @@ fn stable_step_is_where_the_closed_form_says() {
 /// Steps that sinew finds are stable, by any bound, also where tissue is squeezed and its frequencies rise.
 #[test]
 fn steps_that_are_found_are_stable_while_tissue_is_squeezed() {
-    for (run, bound) in configurations().iter().flat_map(|run| ["Elements", "Auto", "Iterated"].map(|b| (run, b))) {
+    for (run, bound) in cpu_and_long_gpu().iter().flat_map(|run| ["Elements", "Auto", "Iterated"].map(|b| (run, b))) {
         let mut simulation = run.start(&format!(
             "(duration: 0.6, integration: (bound: {bound}),
             bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4), elements: Hex8MeanDilatation), material: \"m\")}},
@@ -164,7 +164,7 @@ fn rigid_rotation_is_not_damped() {
 /// All the work that elements have not kept is what damping has taken: nothing comes from nothing.
 #[test]
 fn energy_that_is_gone_has_been_spent() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(&bar("Hex8", 1e-3, "output: (energies_every: 0.01),"));
         let start = simulation.energies().unwrap().strain;
         for part in 1..=8 {
@@ -202,7 +202,7 @@ fn everything(elements: &str) -> String {
 
 #[test]
 fn all_backends_agree_and_snapshots_are_gone_on_from() {
-    let runs: Vec<Configuration> = configurations();
+    let runs: Vec<Configuration> = cpu_and_long_gpu();
     for elements in ELEMENTS {
         let mut reference: Option<Vec<glam::DVec3>> = None;
         for run in &runs {

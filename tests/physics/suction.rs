@@ -4,7 +4,7 @@
 //! Faces at the mouth's edge count by the share that is within: at six faces on the radius the area is that of the
 //! circle to .5 %, so that χ² times it is Δp π r² to 1.5 %; 3 % are allowed.
 
-use crate::configurations::{Configuration, configurations, near, scene_of};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, near, scene_of};
 use sinew::components::Precision;
 use sinew::{Options, Simulation};
 use std::f64::consts::PI;
@@ -110,7 +110,7 @@ fn an_open_mouth_leaks() {
 /// What removal bares is sucked in the next step; the energy of it all balances.
 #[test]
 fn bared_faces_are_sucked_at_once() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let rest = ", delay: 0.005, curve: Smooth(end: 0.05)), (tool: \"tip\", pressure: 1, bore: 1e-9, reach: 1e-9";
         // where faces change the force jumps: waves of a few steps a period are counted to a few percent
         let scene = plate("Hex8", &format!("{GLUED} integration: (safety: 0.3),"), rest)
@@ -141,7 +141,7 @@ fn bits_of(simulation: &mut Simulation) -> Vec<u64> {
 
 #[test]
 fn bits_with_suction_do_not_depend_on_how_steps_are_taken() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let of = |threads: usize, fuse: bool, resume: Option<u64>| {
             let removal = "removal: [(when: InTool(tool: \"tip\", reach: 1.5e-3, rate: 1e-5))], probes:";
             let scene = plate("Tet4", GLUED, ", delay: 0.01").replace("probes:", removal);

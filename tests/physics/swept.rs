@@ -3,7 +3,7 @@
 //! A node that a tool first meets with a plane of its surface ends on that plane: of a needle that comes down on it,
 //! below the needle by its radius, to rounding of its place (1e-12 of the body's size in f64, 1e-6 in f32).
 
-use crate::configurations::{configurations, near, scene_of};
+use crate::configurations::{cpu_and_long_gpu, near, scene_of};
 use glam::DVec3;
 use sinew::{Options, Simulation};
 
@@ -35,7 +35,7 @@ fn below_it(simulation: &mut Simulation) -> Vec<DVec3> {
 
 #[test]
 fn a_swept_needle_takes_nodes_along_that_it_would_have_jumped_over() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         for radii in [0.4, 1.0, 1.9, 2.4] {
             let mut simulation = run.start(&needle(radii, ", swept: true"));
             let steps = if radii < 1.0 { 2 } else { 1 };

@@ -1,13 +1,13 @@
 //! Friction between tools and tissue: sticking and sliding, directions, what it takes.
 
-use crate::configurations::{configurations, near};
+use crate::configurations::{configurations, cpu_and_long_gpu, near};
 
 /// Gravity stands in for a slope: its part along the table grows while the block lies on it already. One layer of
 /// elements: softer blocks ring when they slide (Adams 1995), and what hops is held less.
 #[test]
 fn a_block_sticks_below_the_angle_of_friction_and_slides_beyond() {
     let (friction, damping, g) = (0.5, 40.0, 9.81);
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         // the critical angle is 26.57 degrees
         for degrees in [20.0_f64, 25.0, 30.0, 40.0] {
             let (sin, cos) = degrees.to_radians().sin_cos();
@@ -60,7 +60,7 @@ fn a_block_sticks_below_the_angle_of_friction_and_slides_beyond() {
 /// larger block begins to slide at its edges, and slides as a whole long before it is pulled by the larger coefficient.
 #[test]
 fn what_sticks_is_held_better_than_what_slides() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         for (pull, slides) in [(0.55, false), (0.65, true)] {
             let mut simulation = run.start(&format!(
                 "(duration: 0.5, bodies: {{\"b\": (mesh: Box(size: (0.02, 0.02, 0.001), cells: (1, 1, 1)), material: \"m\")}},
@@ -88,7 +88,7 @@ fn what_sticks_is_held_better_than_what_slides() {
 
 #[test]
 fn friction_is_against_the_slip_whatever_its_direction() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         for degrees in [0.0_f64, 33.0, 120.0, 250.0] {
             let (sin, cos) = degrees.to_radians().sin_cos();
             let mut simulation = run.start(&format!(

@@ -1,6 +1,6 @@
 //! Tools that are closed surfaces of triangles.
 
-use crate::configurations::configurations;
+use crate::configurations::cpu_and_long_gpu;
 
 /// At its point the distance to a grid grows by less than one metre a metre: one correction would let the node in.
 #[test]
@@ -9,7 +9,7 @@ fn the_point_of_a_mesh_does_not_go_into_a_node() {
     let octahedron = "v 6 0 0\nv -6 0 0\nv 0 6 0\nv 0 -6 0\nv 0 0 6\nv 0 0 -6\nf 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\n\
                       f 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n";
     std::fs::write(folder.path().join("octahedron.obj"), octahedron).unwrap();
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start_in(
             "(duration: 0.1, bodies: {\"b\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (10, 10, 10),
                 elements: Hex8MeanDilatation), material: \"m\")},

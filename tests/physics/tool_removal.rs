@@ -4,7 +4,7 @@
 //! mesh. Surface: every edge belongs to an even number of faces. Mass: ρ times the volume that is gone. Energy: what
 //! bodies hold and have lost is what loads and constraints have given.
 
-use crate::configurations::{Configuration, configurations, near, scene_of};
+use crate::configurations::{Configuration, cpu_and_long_gpu, near, scene_of};
 use sinew::components::Precision;
 use sinew::{Options, Simulation};
 use std::collections::BTreeMap;
@@ -42,7 +42,7 @@ fn odd_edges(simulation: &mut Simulation, body: &str) -> usize {
 /// C29.
 #[test]
 fn a_tool_takes_its_rate_from_any_mesh() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         for (cells, elements, of_a_cell) in [(4, "Hex8", 1.0), (8, "Hex8", 1.0), (6, "Tet4", 6.0)] {
             let mut simulation = run.start(&drilled(cells, elements, ""));
             let element = (0.02 / cells as f64).powi(3) / of_a_cell;
@@ -77,7 +77,7 @@ fn a_tool_takes_its_rate_from_any_mesh() {
 /// Work, losses and what went with the elements.
 #[test]
 fn energies_balance_while_a_tool_takes_elements() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(&drilled(6, "Tet4", ""));
         for time in [0.1, 0.2] {
             simulation.advance_to(time).unwrap();
@@ -94,7 +94,7 @@ fn energies_balance_while_a_tool_takes_elements() {
 /// While nothing is in reach nothing goes, whatever the rate.
 #[test]
 fn out_of_reach_nothing_goes() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let scene = drilled(4, "Hex8", "").replace("reach: 6e-3", "reach: 2e-3").replace("rate: 2e-6", "rate: 1");
         let mut simulation = run.start(&scene);
         // the first centroids are 2.5 mm below the surface, half a millimetre above which the tip begins
@@ -108,7 +108,7 @@ fn out_of_reach_nothing_goes() {
 /// Without a mouth a tool takes what is around it; what is not chosen stays; at most `burst` go at a time.
 #[test]
 fn a_ball_takes_what_is_around_it() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let scene = drilled(8, "Hex8", ", burst: 3, curve: Step(start: 0.05)")
             .replace("Tube(length: 0.03, inner: 3e-3, outer: 5e-3)", "Sphere(radius: 3e-3)")
             .replace("rounding: 5e-4,", "")
@@ -146,7 +146,7 @@ fn bits_of(simulation: &mut Simulation) -> Vec<u64> {
 /// Threads and snapshots, at any step: the same bits.
 #[test]
 fn bits_with_what_tools_take_do_not_depend_on_how_steps_are_taken() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let of = |threads: usize, resume: Option<u64>| {
             let scene =
                 scene_of(&drilled(8, "Tet4", "").replace("rate: 2e-6", "rate: 2e-5"), std::path::Path::new("."));

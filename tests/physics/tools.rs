@@ -4,7 +4,7 @@
 //! (1e-12 of the body's size in f64, 1e-6 in f32), and what the tool feels is the sum of these forces, whose rounding
 //! is that of m u/Δt²: 1e-9 and 1e-4 of the weight of a body at rest.
 
-use crate::configurations::{Configuration, configurations, near};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, near};
 use glam::DVec3;
 use sinew::components::{DisplacementIncrement, Precision};
 use sinew::{Options, Simulation};
@@ -36,7 +36,7 @@ fn steps(simulation: &mut Simulation) -> Vec<DVec3> {
 
 #[test]
 fn what_rests_on_a_table_weighs_on_it_and_is_not_in_it() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(&on_a_table("", ""));
         simulation.advance_to(1.0).unwrap();
         let reading = simulation.tool("table").unwrap();
@@ -59,7 +59,7 @@ fn a_bar_hits_a_plane_as_the_wave_equation_says() {
     let (length, speed, side) = (0.1, 0.02, 0.01_f64);
     let modulus: f64 = 3000.0 * 0.55 / (1.45 * 0.1);
     let c = (modulus / 1000.0).sqrt();
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         for cells in [40, 80] {
             let mut simulation = run.start(&format!(
                 "(duration: 0.09, bodies: {{\"b\": (mesh: Box(size: ({side}, {side}, {length}), cells: (1, 1, {cells})), material: \"m\",
@@ -106,7 +106,7 @@ fn a_bar_hits_a_plane_as_the_wave_equation_says() {
 /// Force by what nodes feel, by the change of momentum, and by the reaction of what is held.
 #[test]
 fn the_force_on_a_tool_is_the_same_by_three_ways() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(&format!(
             "(duration: 1, bodies: {{\"b\": (mesh: Box(size: (0.03, 0.03, 0.02), cells: (6, 6, 4), elements: Tet4), material: \"m\")}},
             materials: {{{TISSUE}}}, constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))],
@@ -141,7 +141,7 @@ fn the_force_on_a_tool_is_the_same_by_three_ways() {
 /// The work of a tool is stored, damped or lost: nothing else.
 #[test]
 fn the_work_of_a_tool_is_accounted_for() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(
             "(duration: 0.4, bodies: {\"b\": (mesh: Box(size: (0.03, 0.03, 0.02), cells: (6, 6, 4)), material: \"m\")},
             materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 5)},
@@ -202,7 +202,7 @@ fn a_cube_in_a_corner_leans_on_all_three_planes() {
 /// Between two planes at an acute angle the turns at a node have to find forces that fit.
 #[test]
 fn a_wedge_of_planes_holds_what_falls_into_it() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(
             "(duration: 1.5, bodies: {\"b\": (mesh: Ellipsoid(radii: (0.01, 0.01, 0.01), across: 6), material: \"m\",
                 translate: (0, 0, 0.0205))},
@@ -258,7 +258,7 @@ fn a_plate_presses_a_block_evenly() {
 /// Nodes that start inside are pushed out gently, and what they gain is no more than a spring's energy would be.
 #[test]
 fn a_small_overlap_at_the_start_settles() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(
             "(duration: 0.2, bodies: {\"b\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (4, 4, 4)), material: \"m\")},
             materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))},
@@ -284,7 +284,7 @@ fn a_small_overlap_at_the_start_settles() {
 fn far_from_the_origin_contact_is_the_same() {
     let mut forces = Vec::new();
     for shift in [0.0, 1e4] {
-        for run in configurations() {
+        for run in cpu_and_long_gpu() {
             let mut simulation = run.start(&format!(
                 "(duration: 0.3, bodies: {{\"b\": (mesh: Box(size: (0.03, 0.03, 0.02), cells: (5, 5, 3)),
                     material: \"m\", translate: ({shift}, 0, 0))}},
@@ -324,7 +324,7 @@ const DRAWN: &str = "(duration: 0.2, bodies: {\"b\": (mesh: Box(size: (0.03, 0.0
 /// Threads, passes apart and together, snapshots: the same bits.
 #[test]
 fn bits_with_tools_do_not_depend_on_how_steps_are_taken() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let of = |threads: usize, fuse: &str, resume: bool| {
             let scene = crate::configurations::scene_of(&DRAWN.replace("FUSE", fuse), std::path::Path::new("."));
             let options = Options { threads, ..run.options.clone() };
@@ -357,7 +357,7 @@ fn is_gpu(run: &Configuration) -> bool {
 /// What a program sets moves the tool, at the rate that the scene allows.
 #[test]
 fn an_input_moves_a_tool() {
-    for run in configurations() {
+    for run in cpu_and_long_gpu() {
         let mut simulation = run.start(&DRAWN.replace("FUSE", ""));
         simulation.advance_to(0.06).unwrap();
         let before = simulation.tool("rod").unwrap();

@@ -1,6 +1,6 @@
 //! Laws of one's own in WGSL: what the translation makes of our own WGSL twins is the Rust law, on every backend.
 
-use crate::configurations::{ELEMENTS, configurations, near};
+use crate::configurations::{ELEMENTS, cpu_and_long_gpu, near};
 use crate::random::Random;
 use sinew::backend::user_law::{LawCheck, read};
 use sinew::glam::DMat3;
@@ -129,7 +129,7 @@ fn a_law_may_call_things_as_kernels_call_theirs() {
     let built_in = "neo_hookean: Moduli(shear: 1034.4828, bulk: 1e4)";
     let own = r#"law: (file: "own.wgsl", parameters: {"shear": 1034.4828, "bulk": 1e4})"#;
     for elements in ["Tet4", "Hex8MeanDilatation"] {
-        for configuration in configurations() {
+        for configuration in cpu_and_long_gpu() {
             let [expected, found] = [built_in, own].map(|law| {
                 let mut run = configuration.start_in(&scene(law, elements), folder.path());
                 run.advance_to(0.02).unwrap();
@@ -152,7 +152,7 @@ fn a_run_under_a_law_of_ones_own_goes_as_under_the_same_law_built_in() {
     let own = r#"law: (file: "neo_hookean.wgsl", parameters: {"shear": 1034.4828, "bulk": 1e4})"#;
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders"));
     for elements in ELEMENTS {
-        for configuration in configurations() {
+        for configuration in cpu_and_long_gpu() {
             let mut runs = [built_in, own].map(|law| {
                 let mut run = configuration.start_in(&scene(law, elements), folder);
                 run.advance_to(0.02).unwrap();

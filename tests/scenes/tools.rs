@@ -13,8 +13,18 @@ fn on_the_ball(young: f64) -> f64 {
 
 #[test]
 fn the_ball_feels_what_the_layer_formula_says() {
-    for (young, cells, bound) in [(3e3, "(24, 24, 8)", 0.08), (3e3, "(36, 36, 12)", 0.04), (2e4, "(36, 36, 12)", 0.04)]
-    {
+    agrees_with_the_layer_formula([(3e3, "(24, 24, 8)", 0.08), (2e4, "(24, 24, 8)", 0.08)]);
+}
+
+/// On a finer mesh half as far off.
+#[test]
+#[ignore = "long"]
+fn the_ball_feels_what_the_layer_formula_says_on_the_shipped_mesh() {
+    agrees_with_the_layer_formula([(3e3, "(36, 36, 12)", 0.04), (2e4, "(36, 36, 12)", 0.04)]);
+}
+
+fn agrees_with_the_layer_formula(cases: [(f64, &str, f64); 2]) {
+    for (young, cells, bound) in cases {
         let sets = [
             format!("bodies.layer.mesh.cells={cells}"),
             format!("materials.tissue.neo_hookean=Young(young: {young}, poisson: 0.45)"),
@@ -31,7 +41,8 @@ fn the_ball_feels_what_the_layer_formula_says() {
 
 #[test]
 fn the_probe_feels_depth_and_friction_and_leaves_nothing_behind() {
-    let mut simulation = Simulation::new(&scene("probe", &[]), &reference()).unwrap();
+    let mut simulation =
+        Simulation::new(&scene("probe", &["bodies.tissue.mesh.cells=(20, 10, 5)"]), &reference()).unwrap();
     simulation.advance_to(0.15).unwrap();
     let pressed = simulation.tool("probe.tip").unwrap();
     simulation.advance_to(0.4).unwrap();
