@@ -76,7 +76,7 @@ pub struct Instability {
     pub time: f64,
     /// The same in steps.
     pub step: u64,
-    /// The body.
+    /// The body; empty where it is none of them alone.
     pub body: String,
     /// The first thing that went wrong, with the author's number of the element or node.
     pub what: String,
@@ -141,9 +141,10 @@ pub fn shell_word(path: &Path) -> String {
 impl std::fmt::Display for Instability {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { time, step, body, what, cause, good_until, .. } = self;
+        let place = if body.is_empty() { String::new() } else { format!(" in body {body}") };
         write!(
             f,
-            "the simulation broke down before t = {time} s (step {step}) in body {body}: {what}. Likely causes: {cause}. \
+            "the simulation broke down before t = {time} s (step {step}){place}: {what}. Likely causes: {cause}. \
              Outputs up to t = {good_until} s are kept"
         )?;
         match &self.last_good {

@@ -317,15 +317,15 @@ impl Observer {
         what: impl Fn() -> String,
     ) -> Result<(), Error> {
         let Some(value) = values.find(|value| !value.is_finite()) else { return Ok(()) };
-        Err(self.refused(world, "all bodies", format!("{} would be {value}", what()), Criterion::of("result")))
+        Err(self.refused(world, "", format!("{} would be {value}", what()), Criterion::of("result")))
     }
 
     /// That an implicit step was not found.
     pub fn unsolved(&self, world: &World, found: String, criterion: Criterion) -> Error {
         let cause = "a step too long for how bodies move (smaller `step` of `solver`), a load or motion too large for the \
                      mesh, or bodies that give way: buckling, a law that softens";
-        let body = "all bodies".into();
-        let broken = guards::instability(world, &self.guard_settings, body, found, cause, criterion, self.good_until);
+        let nowhere = String::new();
+        let broken = guards::instability(world, &self.guard_settings, nowhere, found, cause, criterion, self.good_until);
         Error::Unstable(Box::new(broken))
     }
 

@@ -2,11 +2,12 @@
 //! every so many steps by the guards; `shaders/guard_elements.wgsl` is its twin.
 
 use super::element_kernel::{corner_registers, group_vectors};
+use super::in_one_place::{ElasticOfCopies, in_one_place};
 use super::{BlockLaw, Cpu};
 use crate::components::FamilyDirection;
 use crate::elements::{Element, PressureFrom};
 use crate::materials::{Elastic, ElasticLaw, Kinematics};
-use crate::math::{LANES, Real, SimdScalar};
+use crate::math::{LANES, Mat3, Real, SimdScalar};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
 
@@ -121,7 +122,10 @@ impl<E: Element, T: SimdScalar> PatchSums<'_, E, T> {
         corners: &[[T::Vector<S>; 3]; crate::elements::MOST_NODES],
     ) -> Register<T::Vector<S>> {
         let elastic = match &self.law.copies {
-            Some(copies) => copies.elastic(simd, &self.law.elastic, group, at),
+            Some(copies) => {
+                let kind = &self.law.elastic;
+                in_one_place(simd, ElasticOfCopies { simd, copies, kind, group, at })
+            }
             None => self.law.elastic.map(
                 #[inline(always)]
                 |number: T| T::splat(simd, number),
@@ -136,12 +140,14 @@ impl<E: Element, T: SimdScalar> PatchSums<'_, E, T> {
         let mut hourglass = zero;
         for point in 0..E::POINTS {
             let state = E::at_point(&u, point, number);
-            let k = elastic.kinematics(&state.gradient);
-            let energy = simd.vectorize(Energy { elastic: &elastic, k: &k }) + self.fibre_energy(simd, group, at, &k);
+            let (columns, law) = (self.columns, self.law);
+            let point_state =
+                PointState { simd, columns, law, elastic: &elastic, group, at, gradient: &state.gradient };
+            let [energy, measure, j] = in_one_place(simd, point_state);
             isochoric = state.volume.mul_add(energy, isochoric);
-            change = state.volume.mul_add(elastic.volume_measure(&k), change);
+            change = state.volume.mul_add(measure, change);
             volume += state.volume;
-            least = least.min(k.true_j);
+            least = least.min(j);
             if point == 0 {
                 hourglass = E::hourglass_energy(&u, &state.gradient, number);
             }
@@ -179,10 +185,36 @@ impl<E: Element, T: SimdScalar> PatchSums<'_, E, T> {
         }
         sum * sum.constant(1.0 / E::NODES as f64)
     }
+}
 
+/// What elements come to at one of their points.
+struct PointState<'a, T: SimdScalar, S: Simd> {
+    simd: S,
+    columns: &'a GuardColumns<'a, T>,
+    law: &'a BlockLaw<T>,
+    elastic: &'a ElasticLaw<T::Vector<S>>,
+    group: usize,
+    at: usize,
+    gradient: &'a Mat3<T::Vector<S>>,
+}
+
+impl<T: SimdScalar, S: Simd> WithSimd for PointState<'_, T, S> {
+    /// Ψ_iso with the fibres' (J/m³), what the volume is measured by, and J.
+    type Output = [T::Vector<S>; 3];
+
+    #[inline(always)]
+    fn with_simd<Q: Simd>(self, _: Q) -> Self::Output {
+        let k = self.elastic.kinematics(self.gradient);
+        let energy = self.elastic.isochoric_energy(&k) + self.fibre_energy(&k);
+        [energy, self.elastic.volume_measure(&k), k.true_j]
+    }
+}
+
+impl<T: SimdScalar, S: Simd> PointState<'_, T, S> {
     /// Of all families of fibres (J/m³).
     #[inline(always)]
-    fn fibre_energy<S: Simd>(&self, simd: S, group: usize, at: usize, k: &Kinematics<T::Vector<S>>) -> T::Vector<S> {
+    fn fibre_energy(&self, k: &Kinematics<T::Vector<S>>) -> T::Vector<S> {
+        let Self { simd, group, at, .. } = *self;
         let splat = |number: T| T::splat(simd, number);
         let mut energy = splat(T::default());
         let (copies, families) = (&self.law.copies, self.law.exponential.len());
@@ -191,20 +223,21 @@ impl<E: Element, T: SimdScalar> PatchSums<'_, E, T> {
             if let Some(copies) = copies {
                 fibres.eta = copies.eta(simd, group, at, families);
             }
-            energy += fibres.energy(k, self.direction(simd, group, at, from));
+            energy += fibres.energy(k, self.direction(from));
         }
         for (number, (family, from)) in self.law.exponential.iter().enumerate() {
             let mut family = family.map(splat);
             if let Some(copies) = copies {
                 copies.stiffen(simd, (group, at), (number, families), &mut family);
             }
-            energy += family.energy(k, self.direction(simd, group, at, from));
+            energy += family.energy(k, self.direction(from));
         }
         energy
     }
 
     #[inline(always)]
-    fn direction<S: Simd>(&self, simd: S, group: usize, at: usize, from: &FamilyDirection<T>) -> [T::Vector<S>; 3] {
+    fn direction(&self, from: &FamilyDirection<T>) -> [T::Vector<S>; 3] {
+        let Self { simd, group, at, .. } = *self;
         let numbers = 3 * self.law.varying_families();
         [0, 1, 2].map(|i| match (from, self.columns.fibre_direction) {
             (FamilyDirection::Uniform(a), _) => T::splat(simd, a[i]),
@@ -213,20 +246,5 @@ impl<E: Element, T: SimdScalar> PatchSums<'_, E, T> {
             }
             (FamilyDirection::Varying(_), None) => T::splat(simd, T::default()),
         })
-    }
-}
-
-/// Ψ_iso of a law in a function of its own, for the same reason as the stress.
-struct Energy<'a, R: Real> {
-    elastic: &'a ElasticLaw<R>,
-    k: &'a Kinematics<R>,
-}
-
-impl<R: Real> WithSimd for Energy<'_, R> {
-    type Output = R;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> R {
-        self.elastic.isochoric_energy(self.k)
     }
 }

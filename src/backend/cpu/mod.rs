@@ -3,6 +3,7 @@
 mod arenas;
 mod element_kernel;
 mod guard_kernel;
+mod in_one_place;
 mod law;
 mod law_copies;
 mod node_kernel;

@@ -107,7 +107,7 @@ fn a_scene_that_breaks_down_is_told_and_the_app_goes_on() {
         app.update();
         told.extend(messages::<BrokeDown>(&mut app));
     }
-    assert!(told.len() == 1 && told[0].scene == wild && told[0].error.contains("in body bar"), "{told:?}");
+    assert!(told.len() == 1 && told[0].scene == wild && told[0].error.contains("broke down"), "{told:?}");
     assert!(simulation(&app, wild).is_broken() && !simulation(&app, tame).is_broken());
     assert!(simulation(&app, tame).time() > 0.4);
     app.world_mut().entity_mut(wild).insert(SoftInputs([("weight".to_string(), 1.0)].into()));

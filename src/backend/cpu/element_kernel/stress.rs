@@ -1,6 +1,7 @@
 //! Stress at a point of a register full of elements: the law's, with what the material has on top.
 
 use super::{FIBRES, GENERIC, PatchForces, VISCOSITY};
+use crate::backend::cpu::in_one_place::{ElasticOfCopies, in_one_place};
 use crate::elements::{Element, PressureFrom};
 use crate::materials::{Elastic, Fibres, Kinematics};
 use crate::math::{LANES, Mat3, Real, SimdScalar, Sym3};
@@ -45,7 +46,8 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
             && let Some(copies) = &self.law.copies
         {
             let group = self.first_group + group;
-            law.elastic = copies.elastic(simd, self.elastic, group, at);
+            let kind = self.elastic;
+            law.elastic = in_one_place(simd, ElasticOfCopies { simd, copies, kind, group, at });
             if self.law.fibres.is_some() {
                 law.fibres.eta = copies.eta(simd, group, at, self.law.exponential.len());
             }
