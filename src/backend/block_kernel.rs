@@ -4,7 +4,7 @@
 use super::Buffers;
 use super::cpu::BlockLaw;
 use super::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
-use super::law_kernel::{ElasticPart, ExponentialFamily, family_directions, law_of_element, prerequisites, private};
+use super::law_kernel::{ElasticPart, ExponentialFamily, family_directions, law_of_element, prerequisites};
 use super::patch_lists::{BATCH_GROUPS, PLACE_BITS, PackedPatches, PatchLists, patch_batches};
 use super::user_law;
 use crate::components::{
@@ -216,8 +216,8 @@ impl BlockKernels {
     }
 
     /// A fragment whose uniform of that name is each element's own where copies differ.
-    fn own(&self, fragment: Fragment, uniform: &str) -> Fragment {
-        if self.law_numbers.is_some() { private(&fragment, uniform) } else { fragment }
+    fn own(&self, fragment: Fragment, uniform: &'static str) -> Fragment {
+        if self.law_numbers.is_some() { fragment.with_private(uniform) } else { fragment }
     }
 
     /// Adds where the element type's pressure comes from.

@@ -75,12 +75,20 @@ pub struct Fragment {
     pub path: String,
     /// The WGSL text.
     pub text: Cow<'static, str>,
+    /// Uniforms that it declares and that each invocation has for itself in this kernel.
+    private: Vec<&'static str>,
 }
 
 impl Fragment {
     /// A fragment from its path and text.
     pub fn new(path: impl Into<String>, text: impl Into<Cow<'static, str>>) -> Self {
-        Self { path: path.into(), text: text.into() }
+        Self { path: path.into(), text: text.into(), private: Vec::new() }
+    }
+
+    /// The same with a variable of each invocation's own in place of its uniform of that name.
+    pub(crate) fn with_private(mut self, uniform: &'static str) -> Self {
+        self.private.push(uniform);
+        self
     }
 }
 

@@ -50,13 +50,6 @@ pub(super) fn family_directions(families: &[(ExponentialFibre<f32>, FamilyDirect
     text
 }
 
-/// A fragment with a variable of each invocation's own in place of a uniform of that name.
-pub(super) fn private(fragment: &Fragment, name: &str) -> Fragment {
-    let text =
-        fragment.text.replace(&format!("@group(0) @binding(0) var<uniform> {name}:"), &format!("var<private> {name}:"));
-    Fragment::new(fragment.path.clone(), text)
-}
-
 /// WGSL that gives an invocation the law of its element, where the parameters in
 /// [`LawParameters::numbers`](super::cpu::LawParameters::numbers) differ from copy to copy.
 pub(super) fn law_of_element(law: &BlockLaw<f32>) -> String {

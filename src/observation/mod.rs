@@ -325,7 +325,8 @@ impl Observer {
         let cause = "a step too long for how bodies move (smaller `step` of `solver`), a load or motion too large for the \
                      mesh, or bodies that give way: buckling, a law that softens";
         let nowhere = String::new();
-        let broken = guards::instability(world, &self.guard_settings, nowhere, found, cause, criterion, self.good_until);
+        let broken =
+            guards::instability(world, &self.guard_settings, nowhere, found, cause, criterion, self.good_until);
         Error::Unstable(Box::new(broken))
     }
 

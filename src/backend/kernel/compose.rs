@@ -50,7 +50,7 @@ struct Struct {
 /// and for a `step` that is no uniform.
 pub fn compose(fragments: &[Fragment]) -> Result<Composed, KernelError> {
     let sources = Sources::new(fragments);
-    checked(parsed(&sources)?, &sources)
+    checked(parsed(fragments, &sources)?, &sources)
 }
 
 /// Kernels put together so far: each text is parsed once, and each kernel composed once, whatever asks for it.
@@ -83,12 +83,12 @@ impl Composer {
         let root = kernel.root();
         let mut units: Vec<(&Unit, Arc<Module>)> = Vec::new();
         for unit in kernel.units.iter().chain([&root]) {
-            let text = unit.text();
-            let module = match self.parsed.get(&text) {
+            let key = unit.key();
+            let module = match self.parsed.get(&key) {
                 Some(known) => known.clone(),
                 None => {
-                    let module = Arc::new(parsed(&Sources::new(unit.fragments()))?);
-                    self.parsed.insert(text, module.clone());
+                    let module = Arc::new(parsed(unit.fragments(), &Sources::new(unit.fragments()))?);
+                    self.parsed.insert(key, module.clone());
                     module
                 }
             };
@@ -99,8 +99,16 @@ impl Composer {
     }
 }
 
-fn parsed(sources: &Sources) -> Result<Module, KernelError> {
-    naga::front::wgsl::parse_str(sources.text()).map_err(|e| sources.parse_error(&e))
+fn parsed<'a>(fragments: impl IntoIterator<Item = &'a Fragment>, sources: &Sources) -> Result<Module, KernelError> {
+    let mut module = naga::front::wgsl::parse_str(sources.text()).map_err(|e| sources.parse_error(&e))?;
+    for name in fragments.into_iter().flat_map(|fragment| &fragment.private) {
+        let mut uniforms = module.global_variables.iter_mut().map(|(_, variable)| variable);
+        let uniform =
+            uniforms.find(|found| found.space == AddressSpace::Uniform && found.name.as_deref() == Some(name));
+        let uniform = uniform.ok_or_else(|| variable_error(name, "is no uniform".to_owned()))?;
+        (uniform.space, uniform.binding) = (AddressSpace::Private, None);
+    }
+    Ok(module)
 }
 
 /// Checks a module, and tells what it declares.

@@ -56,6 +56,25 @@ fn bindings_tell_kind_type_size_and_stride() {
     assert_eq!((material.kind, material.size, material.stride), (BindingKind::Uniform, 64, None));
 }
 
+/// A uniform that an invocation has for itself: no buffer, and it may be written; another kernel of the same text has it
+/// as it stands there.
+#[test]
+fn uniforms_become_variables_of_each_invocation_where_that_is_said() {
+    let kernel = |material: Fragment| {
+        let text = "fn take() { material.shear = 3.0; }\n";
+        let all = [Fragment::new("main.wgsl", MAIN), crate::shader!("row"), material, Fragment::new("take.wgsl", text)];
+        all.into_iter().fold(Kernel::new("forces", "forces"), Kernel::fragment)
+    };
+    let material = Fragment::new("material.wgsl", MATERIAL);
+    let mut composer = Composer::default();
+    let composed = composer.compose(&kernel(material.clone().with_private("material"))).unwrap();
+    assert!(composed.binding("material").is_none() && composed.binding("force").is_some());
+    // what is a uniform cannot be written
+    assert!(matches!(composer.compose(&kernel(material.clone())), Err(KernelError::Wgsl { .. })));
+    let unknown = composer.compose(&kernel(material.with_private("fibres"))).unwrap_err();
+    assert!(unknown.to_string().contains("fibres") && unknown.to_string().contains("is no uniform"), "{unknown}");
+}
+
 #[test]
 fn structs_tell_the_offset_type_and_size_of_each_member() {
     let composed = compose(&fragments()).unwrap();

@@ -37,9 +37,11 @@ impl Unit {
         self.common.iter().chain(&self.own)
     }
 
-    /// Its text.
-    pub(super) fn text(&self) -> String {
-        self.fragments().flat_map(|fragment| [fragment.text.as_ref(), "\n"]).collect()
+    /// What it is known by: its text, and which uniforms each invocation has for itself.
+    pub(super) fn key(&self) -> String {
+        let mut key: String = self.fragments().flat_map(|fragment| [fragment.text.as_ref(), "\n"]).collect();
+        key.extend(self.fragments().flat_map(|fragment| &fragment.private).flat_map(|name| ["\0", name]));
+        key
     }
 }
 
@@ -65,11 +67,8 @@ impl Kernel {
     /// What makes it a kernel of its own: the texts, and how they are put together.
     pub(crate) fn key(&self) -> String {
         let mut key = String::new();
-        for Unit { common, own, variables, links } in self.units.iter().chain([&self.root()]) {
-            for fragment in common.iter().chain(own) {
-                key.extend([fragment.text.as_ref(), "\n"]);
-            }
-            key += &format!("\0{}{variables:?}{links:?}\0", common.len());
+        for unit in self.units.iter().chain([&self.root()]) {
+            key += &format!("{}\0{}{:?}{:?}\0", unit.key(), unit.common.len(), unit.variables, unit.links);
         }
         key
     }
