@@ -8,7 +8,7 @@ use glam::DVec3;
 use smallvec::SmallVec;
 
 /// Nearer than this to a triangle is on it, in edges.
-const ON_IT: f64 = 1e-3;
+pub(super) const ON_IT: f64 = 1e-3;
 
 /// What is at less than this of another distance is nearer, whatever rounding does.
 const NEARER: f64 = 1.0 - 1e-6;
@@ -36,22 +36,33 @@ impl Listed<'_> {
 /// So many triangles' nearest places are kept while it is found what a point faces; points near more are rare.
 const KEPT: usize = 16;
 
+/// Where triangles are nearest that were looked at beforehand.
+pub(super) type Kept = SmallVec<[Nearest; KEPT]>;
+
 /// A triangle, where it is nearest to a point, and how far that is (m).
 type Nearest = (u32, OnTriangle, f64);
 
 /// Where triangles are nearest to a point: of those of its list that are looked at found beforehand.
-pub(super) struct Candidates<'a> {
+pub(super) struct Candidates<'a, 'k> {
     surfaces: &'a Surfaces,
     now: Placed<'a>,
     at: DVec3,
     listed: Listed<'a>,
-    kept: SmallVec<[Nearest; KEPT]>,
+    kept: &'k mut Kept,
     edge: f64,
 }
 
-impl<'a> Candidates<'a> {
-    pub(super) fn new(surfaces: &'a Surfaces, now: Placed<'a>, at: DVec3, listed: Listed<'a>, edge: f64) -> Self {
-        Self { surfaces, now, at, listed, kept: SmallVec::new(), edge }
+impl<'a, 'k> Candidates<'a, 'k> {
+    /// Of surfaces as they are now, with nothing found beforehand.
+    #[inline]
+    pub(super) fn new(
+        (surfaces, now): (&'a Surfaces, Placed<'a>),
+        at: DVec3,
+        listed: Listed<'a>,
+        edge: f64,
+        kept: &'k mut Kept,
+    ) -> Self {
+        Self { surfaces, now, at, listed, kept, edge }
     }
 
     /// Finds beforehand where those at such places in the list are nearest.
@@ -93,6 +104,15 @@ impl<'a> Candidates<'a> {
         others.map(|other| self.distance(other)).fold(f64::INFINITY, f64::min)
     }
 
+    /// Whether one of the triangles around a part of one is nearer than a distance (m). Those found beforehand are asked
+    /// first: as a rule the face that a point is in front of is among them, and what is beside it is done with.
+    fn goes_on_nearer(&self, triangle: u32, part: usize, distance: f64) -> bool {
+        let nearer = |&(other, _, of_other): &Nearest| {
+            of_other < distance && other != triangle && self.surfaces.shares_part(other, triangle, part)
+        };
+        self.kept.iter().any(nearer) || self.around(triangle, part) < distance
+    }
+
     /// How far the point is outside of a triangle, whose nearest place is known; `None` where another triangle must be
     /// nearer, and of triangles without area.
     pub(super) fn outside(&self, triangle: u32, (found, distance): (OnTriangle, f64)) -> Option<Facing> {
@@ -108,7 +128,7 @@ impl<'a> Candidates<'a> {
         }
         // the surface around a place that is nearest is nowhere nearer: not the flat surroundings of a point's own, nor
         // a side that leads round a corner
-        if self.around(triangle, found.part) < NEARER * distance {
+        if self.goes_on_nearer(triangle, found.part, NEARER * distance) {
             return None;
         }
         match off.dot(self.surfaces.normal_of_part(self.now, triangle, found.part)) {

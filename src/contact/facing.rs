@@ -1,8 +1,9 @@
 //! The face that a point faces.
 
-use super::candidates::{Candidates, Listed};
+use super::candidates::{Candidates, Kept, Listed, ON_IT};
 use super::shortlist::{Shortlist, Stays};
 use super::surfaces::{Placed, Point, Surfaces};
+use crate::math::OnTriangle;
 use glam::DVec3;
 
 /// Surfaces face one another where the cosine between their normals is below this.
@@ -31,7 +32,7 @@ pub struct Facing {
 }
 
 /// What a point faces: the face in its way, and where that is a wall of a corner, the other.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Faced {
     /// The face in its way.
     pub first: Option<Facing>,
@@ -39,6 +40,11 @@ pub struct Faced {
     pub second: Option<Facing>,
     /// So much nearer than when the list was made (m) something must come before there is anything to see.
     pub wakes: f64,
+}
+
+impl Faced {
+    /// Nothing, which nothing changes.
+    pub const NOTHING: Self = Self { first: None, second: None, wakes: f64::INFINITY };
 }
 
 impl Surfaces {
@@ -52,11 +58,16 @@ impl Surfaces {
         listed: Listed<'_>,
         (reach, edge): (impl Fn(u32) -> f64, f64),
         (short, stays): (&mut Shortlist, Stays),
-    ) -> Faced {
-        let mut candidates = Candidates::new(self, now, point.place(now.places), listed, edge);
+        faced: &mut Faced,
+    ) {
+        if self.face_alone(now, point, listed, (&reach, edge), short, faced) {
+            return;
+        }
+        let mut kept = Kept::new();
+        let mut candidates = Candidates::new((self, now), point.place(now.places), listed, edge, &mut kept);
         let mut way = Way { surfaces: self, now, point, edge, own: None, waiting: None, faced: [None; 2] };
         let mut wakes = f64::INFINITY;
-        let mut look = |candidates: &Candidates<'_>, number: usize, place: usize| {
+        let mut look = |candidates: &Candidates<'_, '_>, number: usize, place: usize| {
             if listed.is_far(place) {
                 wakes = wakes.min(listed.distances[place]);
                 return;
@@ -76,8 +87,8 @@ impl Surfaces {
         };
         match short.places() {
             Some(places) => {
+                candidates.find(places.iter().map(|&place| usize::from(place)));
                 let places = places.iter().map(|&place| usize::from(place));
-                candidates.find(places.clone());
                 places.enumerate().for_each(|(number, place)| look(&candidates, number, place));
             }
             None => {
@@ -92,7 +103,55 @@ impl Surfaces {
             }
         }
         let [first, second] = way.finish();
-        Faced { first, second, wakes: wakes.min(short.wakes) }
+        *faced = Faced { first, second, wakes: wakes.min(short.wakes) };
+    }
+
+    /// The same of a point with at most one triangle that matters, as most have, where it is in front of that or far
+    /// off: nothing is to be chosen then. Whether that is all there is to it.
+    #[inline]
+    fn face_alone(
+        &self,
+        now: Placed<'_>,
+        point: &Point,
+        listed: Listed<'_>,
+        (reach, edge): (&impl Fn(u32) -> f64, f64),
+        short: &Shortlist,
+        faced: &mut Faced,
+    ) -> bool {
+        let Some(places) = short.places() else { return false };
+        (faced.first, faced.second, faced.wakes) = (None, None, short.wakes);
+        let place = match places {
+            [] => return true,
+            [only] => usize::from(*only),
+            _ => return false,
+        };
+        if listed.is_far(place) {
+            faced.wakes = listed.distances[place].min(short.wakes);
+            return true;
+        }
+        let (triangle, at) = (listed.triangles[place], point.place(now.places));
+        let found = OnTriangle::nearest(at, self.corners(now.places, triangle));
+        let (distance, depth, reach) = (at.distance(found.at), self.depths[triangle as usize], reach(triangle));
+        faced.wakes = (distance - listed.nearer).min(short.wakes);
+        if distance > reach && distance > depth {
+            return true;
+        }
+        let normal = now.normals[triangle as usize];
+        if (found.part != 0 && distance > ON_IT * edge) || normal == DVec3::ZERO || !found.at.is_finite() {
+            return false;
+        }
+        let gap = (at - found.at).dot(normal);
+        if !(gap >= -depth && gap <= reach) {
+            return true;
+        }
+        let is_turned_away = match point.triangle {
+            Some(own) => normal.dot(now.normals[own as usize]) < TURNED_AWAY,
+            None => self.all_turned_away(now, point.nodes[0], normal),
+        };
+        if is_turned_away {
+            faced.first = Some(Facing { triangle, weights: found.weights, at: found.at, normal, gap });
+        }
+        is_turned_away || point.triangle.is_some()
     }
 
     /// Whether two faces are walls of a corner that the point is in: the second rises before the first. A node on an

@@ -20,7 +20,9 @@ fn faced(surfaces: &Surfaces, places: &[DVec3], short: &mut Shortlist, stays: St
     let now = Placed { places, normals: &normals };
     // it is on no triangle
     let point = Point::node(1, 25);
-    surfaces.faced(now, &point, listed, (|_| 0.1, 1.0), (short, stays))
+    let mut found = Faced::NOTHING;
+    surfaces.faced(now, &point, listed, (|_| 0.1, 1.0), (short, stays), &mut found);
+    found
 }
 
 /// However nodes move that a shortlist allows for: what it leaves out changes nothing of what is faced. And it
