@@ -2,7 +2,7 @@
 
 use super::{Surface, SurfaceContacts};
 use crate::backend::cpu::Cpu;
-use crate::contact::{Faced, Listed, Placed, Shortlist, Stays};
+use crate::contact::{Faced, Kept, Listed, Placed, Shortlist, Stays};
 
 /// Points that a task looks at.
 const POINTS_A_TASK: usize = 128;
@@ -54,6 +54,7 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
     // what has moved so far may move back, too
     let stays = Stays { moved: surface.stays.moved + lately, reach: surface.stays.reach - reach };
     cpu.for_each(found.chunks_mut(POINTS_A_TASK), |found| {
+        let mut kept = Kept::default();
         for Found { place, faced, short } in found {
             *short = surface.shortlists[*place as usize];
             let point = &surface.points[surface.lists.points[*place as usize] as usize];
@@ -64,7 +65,7 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
             let place = *place as usize;
             let (triangles, distances) = (surface.lists.triangles(place), surface.lists.distances(place));
             let listed = Listed { triangles, distances, nearer, farthest };
-            surface.triangles.faced(now, point, listed, (reach_of, contacts.edge), (short, stays), faced);
+            surface.triangles.faced(now, point, listed, (reach_of, contacts.edge), (short, stays), (faced, &mut kept));
             if point.triangle.is_some() {
                 let both = [&mut faced.first, &mut faced.second];
                 both.into_iter().flatten().for_each(|facing| facing.gap = surface.gap_of_facet(point, facing));

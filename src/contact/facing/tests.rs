@@ -12,9 +12,9 @@ fn faced(surfaces: &Surfaces, places: &[DVec3], point: &Point, triangles: &[u32]
     let mut short = Shortlist::UNKNOWN;
     let stays = Stays { moved: 1e-3, reach: 1e-3 };
     let [mut found, mut by_short] = [Faced::NOTHING; 2];
-    surfaces.faced(now, point, listed, (&reach, 1.0), (&mut short, stays), &mut found);
+    surfaces.faced(now, point, listed, (&reach, 1.0), (&mut short, stays), (&mut found, &mut Kept::default()));
     // what the shortlist leaves out changes nothing
-    surfaces.faced(now, point, listed, (&reach, 1.0), (&mut short, stays), &mut by_short);
+    surfaces.faced(now, point, listed, (&reach, 1.0), (&mut short, stays), (&mut by_short, &mut Kept::default()));
     assert_eq!(by_short, found);
     found
 }
