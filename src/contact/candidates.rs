@@ -94,12 +94,6 @@ impl<'a, 'k> Candidates<'a, 'k> {
         }
     }
 
-    /// How far the nearest is (m) of the triangles around a part of one.
-    fn around(&self, triangle: u32, part: usize) -> f64 {
-        let others = self.surfaces.around_part(triangle, part).filter(|&other| other != triangle);
-        others.map(|other| self.distance(other)).fold(f64::INFINITY, f64::min)
-    }
-
     /// Whether the point is in front or behind of a triangle, or on it, and not beside.
     #[inline]
     pub(super) fn is_before(&self, (found, distance): &(OnTriangle, f64)) -> bool {
@@ -110,9 +104,21 @@ impl<'a, 'k> Candidates<'a, 'k> {
     /// nearer. As a rule the face that a point is in front of is among them, and what is beside it is done with.
     #[inline]
     pub(super) fn is_beside(&self, triangle: u32, (found, distance): &(OnTriangle, f64)) -> bool {
+        self.shows_nearer(triangle, found.part, (0.0, NEARER * distance))
+    }
+
+    /// Whether a triangle found beforehand that shares a part of one is nearer than a distance, and by so much (both m).
+    #[inline]
+    fn shows_nearer(&self, triangle: u32, part: usize, (by, distance): (f64, f64)) -> bool {
         self.kept.0.iter().any(|&(other, (_, of_other))| {
-            of_other < NEARER * distance && other != triangle && self.surfaces.shares_part(other, triangle, found.part)
+            of_other + by < distance && other != triangle && self.surfaces.shares_part(other, triangle, part)
         })
+    }
+
+    /// Whether any triangle that shares a part of one is nearer than a distance, and by so much (both m).
+    fn goes_on_nearer(&self, triangle: u32, part: usize, (by, distance): (f64, f64)) -> bool {
+        let mut others = self.surfaces.around_part(triangle, part).filter(|&other| other != triangle);
+        self.shows_nearer(triangle, part, (by, distance)) || others.any(|other| self.distance(other) + by < distance)
     }
 
     /// How far the point is outside of a triangle, whose nearest place is known; `None` where another triangle must be
@@ -130,7 +136,7 @@ impl<'a, 'k> Candidates<'a, 'k> {
         }
         // the surface around a place that is nearest is nowhere nearer: not the flat surroundings of a point's own, nor
         // a side that leads round a corner
-        if self.is_beside(triangle, &(found, distance)) || self.around(triangle, found.part) < NEARER * distance {
+        if self.goes_on_nearer(triangle, found.part, (0.0, NEARER * distance)) {
             return None;
         }
         match off.dot(self.surfaces.normal_of_part(self.now, triangle, found.part)) {
@@ -153,6 +159,6 @@ impl<'a, 'k> Candidates<'a, 'k> {
         // both distances change by no more than that
         distance - moved > ON_IT * self.edge
             && found.keeps_part(self.at, self.surfaces.corners(self.now.places, triangle), moved)
-            && self.around(triangle, found.part) + moved < NEARER * (distance - moved)
+            && self.goes_on_nearer(triangle, found.part, (moved, NEARER * (distance - moved)))
     }
 }
