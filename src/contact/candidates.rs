@@ -107,7 +107,7 @@ impl<'a, 'k> Candidates<'a, 'k> {
         self.shows_nearer(triangle, found.part, (0.0, NEARER * distance))
     }
 
-    /// Whether a triangle found beforehand that shares a part of one is nearer than a distance, and by so much (both m).
+    /// Whether a triangle found beforehand that shares a part of one is nearer than a distance, by so much (both m).
     #[inline]
     fn shows_nearer(&self, triangle: u32, part: usize, (by, distance): (f64, f64)) -> bool {
         self.kept.0.iter().any(|&(other, (_, of_other))| {

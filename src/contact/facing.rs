@@ -133,8 +133,8 @@ impl Surfaces {
         *faced = Faced { first, second, wakes: wakes.min(short.wakes) };
     }
 
-    /// The same of a point with one triangle that matters, at a place in its list, as most have, where it is in front of
-    /// that or far off: nothing is to be chosen then. Whether that is all there is to it.
+    /// The same of a point with one triangle that matters, at a place in its list, as most have, where it is in front
+    /// of that or far off: nothing is to be chosen then. Whether that is all there is to it.
     #[inline(always)] // as below
     fn face_alone(
         &self,

@@ -2,8 +2,8 @@ use super::*;
 use crate::contact::{Faced, Kept, Listed, Placed, Point, Surfaces};
 use glam::DVec3;
 
-/// A wavy sheet of 5 × 5 nodes a metre apart, cut into triangles, and a triangle of another body that looks down on it;
-/// its first corner is in nobody's list.
+/// A wavy sheet of 5 × 5 nodes a metre apart, cut into triangles, and a triangle of another body that looks down on
+/// it, whose nodes have no places yet.
 fn sheet() -> (Surfaces, Vec<DVec3>) {
     let at = |i: u32| DVec3::new(f64::from(i % 5), f64::from(i / 5), 0.3 * f64::from(i).sin());
     let cut = |i: u32| [[i, i + 1, i + 6], [i, i + 6, i + 5]];
@@ -14,8 +14,8 @@ fn sheet() -> (Surfaces, Vec<DVec3>) {
     (Surfaces::new(28, triangles, owners, vec![0.5; count + 1]), (0..25).map(at).collect())
 }
 
-/// What a point of the other triangle faces, its first corner or one within, by a shortlist or, where that is not known,
-/// by the whole list.
+/// What a point of the other triangle faces, its first corner or one within, by a shortlist or, where that is not
+/// known, by the whole list.
 fn faced(surfaces: &Surfaces, (places, within): (&[DVec3], bool), short: &mut Shortlist, stays: Stays) -> Faced {
     let other = surfaces.triangles.len() as u32 - 1;
     let all: Vec<u32> = (0..other).collect();
