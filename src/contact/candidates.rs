@@ -5,10 +5,9 @@ use super::shortlist::Stays;
 use super::surfaces::{Placed, Surfaces};
 use crate::math::OnTriangle;
 use glam::DVec3;
-use smallvec::SmallVec;
 
 /// Nearer than this to a triangle is on it, in edges.
-const ON_IT: f64 = 1e-3;
+pub(super) const ON_IT: f64 = 1e-3;
 
 /// What is at less than this of another distance is nearer, whatever rounding does.
 const NEARER: f64 = 1.0 - 1e-6;
@@ -33,64 +32,93 @@ impl Listed<'_> {
     }
 }
 
-/// So many triangles' nearest places are kept while it is found what a point faces; points near more are rare.
-const KEPT: usize = 16;
-
 /// A triangle, where it is nearest to a point, and how far that is (m).
-type Nearest = (u32, OnTriangle, f64);
+type Nearest = (u32, (OnTriangle, f64));
+
+/// Room for where triangles are nearest, so that the next point need not ask for memory.
+#[derive(Clone, Debug, Default)]
+pub struct Kept(Vec<Nearest>);
 
 /// Where triangles are nearest to a point: of those of its list that are looked at found beforehand.
-pub(super) struct Candidates<'a> {
+pub(super) struct Candidates<'a, 'k> {
     surfaces: &'a Surfaces,
     now: Placed<'a>,
     at: DVec3,
-    listed: Listed<'a>,
-    kept: SmallVec<[Nearest; KEPT]>,
+    pub(super) listed: Listed<'a>,
+    kept: &'k mut Kept,
     edge: f64,
 }
 
-impl<'a> Candidates<'a> {
-    pub(super) fn new(surfaces: &'a Surfaces, now: Placed<'a>, at: DVec3, listed: Listed<'a>, edge: f64) -> Self {
-        Self { surfaces, now, at, listed, kept: SmallVec::new(), edge }
+impl<'a, 'k> Candidates<'a, 'k> {
+    /// Of surfaces as they are now, with nothing found beforehand.
+    #[inline]
+    pub(super) fn new(
+        (surfaces, now): (&'a Surfaces, Placed<'a>),
+        at: DVec3,
+        listed: Listed<'a>,
+        edge: f64,
+        kept: &'k mut Kept,
+    ) -> Self {
+        kept.0.clear();
+        Self { surfaces, now, at, listed, kept, edge }
     }
 
     /// Finds beforehand where those at such places in the list are nearest.
+    #[inline]
     pub(super) fn find(&mut self, places: impl Iterator<Item = usize>) {
-        for place in places.take(KEPT) {
+        for place in places {
             let triangle = self.listed.triangles[place];
             let nowhere = || (OnTriangle { at: DVec3::ZERO, weights: [0.0; 3], part: 0 }, f64::INFINITY);
-            let (found, distance) = if self.listed.is_far(place) { nowhere() } else { self.nearest_of(triangle) };
-            self.kept.push((triangle, found, distance));
+            let nearest = if self.listed.is_far(place) { nowhere() } else { self.nearest_of(triangle) };
+            self.kept.0.push((triangle, nearest));
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn nearest_of(&self, triangle: u32) -> (OnTriangle, f64) {
         let found = OnTriangle::nearest(self.at, self.surfaces.corners(self.now.places, triangle));
         (found, self.at.distance(found.at))
     }
 
-    /// The nearest place of the triangle at a place in the list, and how far that is (m); of those found beforehand it
-    /// is the one of that number.
-    pub(super) fn nearest(&self, number: usize, place: usize) -> (OnTriangle, f64) {
-        match self.kept.get(number) {
-            Some(&(_, found, distance)) => (found, distance),
-            None => self.nearest_of(self.listed.triangles[place]),
-        }
+    /// The nearest place of the triangle that was found as that number, and how far that is (m).
+    #[inline]
+    pub(super) fn nearest(&self, number: usize) -> &(OnTriangle, f64) {
+        &self.kept.0[number].1
     }
 
     /// How far a triangle is (m), whether it is in the list or not; infinitely far where it cannot be near enough.
     fn distance(&self, triangle: u32) -> f64 {
-        match self.kept.iter().find(|(other, ..)| *other == triangle) {
-            Some(&(.., distance)) => distance,
+        match self.kept.0.iter().find(|(other, ..)| *other == triangle) {
+            Some(&(_, (_, distance))) => distance,
             None => self.nearest_of(triangle).1,
         }
     }
 
-    /// How far the nearest is (m) of the triangles around a part of one.
-    fn around(&self, triangle: u32, part: usize) -> f64 {
-        let others = self.surfaces.around_part(triangle, part).filter(|&other| other != triangle);
-        others.map(|other| self.distance(other)).fold(f64::INFINITY, f64::min)
+    /// Whether the point is in front or behind of a triangle, or on it, and not beside.
+    #[inline]
+    pub(super) fn is_before(&self, (found, distance): &(OnTriangle, f64)) -> bool {
+        found.part == 0 || *distance <= ON_IT * self.edge
+    }
+
+    /// Whether one of the triangles found beforehand shows that the surface around a place that is nearest goes on
+    /// nearer. As a rule the face that a point is in front of is among them, and what is beside it is done with.
+    #[inline]
+    pub(super) fn is_beside(&self, triangle: u32, (found, distance): &(OnTriangle, f64)) -> bool {
+        self.shows_nearer(triangle, found.part, (0.0, NEARER * distance))
+    }
+
+    /// Whether a triangle found beforehand that shares a part of one is nearer than a distance, by so much (both m).
+    #[inline]
+    fn shows_nearer(&self, triangle: u32, part: usize, (by, distance): (f64, f64)) -> bool {
+        self.kept.0.iter().any(|&(other, (_, of_other))| {
+            of_other + by < distance && other != triangle && self.surfaces.shares_part(other, triangle, part)
+        })
+    }
+
+    /// Whether any triangle that shares a part of one is nearer than a distance, and by so much (both m).
+    fn goes_on_nearer(&self, triangle: u32, part: usize, (by, distance): (f64, f64)) -> bool {
+        let mut others = self.surfaces.around_part(triangle, part).filter(|&other| other != triangle);
+        self.shows_nearer(triangle, part, (by, distance)) || others.any(|other| self.distance(other) + by < distance)
     }
 
     /// How far the point is outside of a triangle, whose nearest place is known; `None` where another triangle must be
@@ -103,12 +131,12 @@ impl<'a> Candidates<'a> {
         let off = self.at - found.at;
         let facing =
             |normal: DVec3, gap: f64| Some(Facing { triangle, weights: found.weights, at: found.at, normal, gap });
-        if found.part == 0 || distance <= ON_IT * self.edge {
+        if self.is_before(&(found, distance)) {
             return facing(normal, off.dot(normal));
         }
         // the surface around a place that is nearest is nowhere nearer: not the flat surroundings of a point's own, nor
         // a side that leads round a corner
-        if self.around(triangle, found.part) < NEARER * distance {
+        if self.goes_on_nearer(triangle, found.part, (0.0, NEARER * distance)) {
             return None;
         }
         match off.dot(self.surfaces.normal_of_part(self.now, triangle, found.part)) {
@@ -124,13 +152,13 @@ impl<'a> Candidates<'a> {
             return self.listed.distances[place] > self.listed.farthest + more + self.listed.nearer + moved;
         }
         let triangle = self.listed.triangles[place];
-        let (found, distance) = self.nearest(place, place);
+        let &(found, distance) = self.nearest(place);
         if distance - moved > f64::max(reach + more, self.surfaces.depths[triangle as usize]) {
             return true;
         }
         // both distances change by no more than that
         distance - moved > ON_IT * self.edge
             && found.keeps_part(self.at, self.surfaces.corners(self.now.places, triangle), moved)
-            && self.around(triangle, found.part) + moved < NEARER * (distance - moved)
+            && self.goes_on_nearer(triangle, found.part, (moved, NEARER * (distance - moved)))
     }
 }

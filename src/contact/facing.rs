@@ -1,8 +1,9 @@
 //! The face that a point faces.
 
-use super::candidates::{Candidates, Listed};
+use super::candidates::{Candidates, Kept, Listed, ON_IT};
 use super::shortlist::{Shortlist, Stays};
 use super::surfaces::{Placed, Point, Surfaces};
+use crate::math::OnTriangle;
 use glam::DVec3;
 
 /// Surfaces face one another where the cosine between their normals is below this.
@@ -31,7 +32,7 @@ pub struct Facing {
 }
 
 /// What a point faces: the face in its way, and where that is a wall of a corner, the other.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Faced {
     /// The face in its way.
     pub first: Option<Facing>,
@@ -39,6 +40,11 @@ pub struct Faced {
     pub second: Option<Facing>,
     /// So much nearer than when the list was made (m) something must come before there is anything to see.
     pub wakes: f64,
+}
+
+impl Faced {
+    /// Nothing, which nothing changes.
+    pub const NOTHING: Self = Self { first: None, second: None, wakes: f64::INFINITY };
 }
 
 impl Surfaces {
@@ -52,17 +58,50 @@ impl Surfaces {
         listed: Listed<'_>,
         (reach, edge): (impl Fn(u32) -> f64, f64),
         (short, stays): (&mut Shortlist, Stays),
-    ) -> Faced {
-        let mut candidates = Candidates::new(self, now, point.place(now.places), listed, edge);
+        (faced, kept): (&mut Faced, &mut Kept),
+    ) {
+        (faced.first, faced.second, faced.wakes) = (None, None, short.wakes);
+        match short.places() {
+            Some([]) => return,
+            Some([only]) => {
+                let of = (now, point, point.place(now.places));
+                if self.face_alone(of, listed, usize::from(*only), (&reach, edge), faced) {
+                    return;
+                }
+            }
+            _ => {}
+        }
+        self.choose((now, point, point.place(now.places)), listed, (reach, edge), (short, stays), (faced, kept));
+    }
+
+    /// The same where there is something to choose.
+    #[inline(never)] // all points would make room for what few need
+    fn choose(
+        &self,
+        (now, point, at): (Placed<'_>, &Point, DVec3),
+        listed: Listed<'_>,
+        (reach, edge): (impl Fn(u32) -> f64, f64),
+        (short, stays): (&mut Shortlist, Stays),
+        (faced, kept): (&mut Faced, &mut Kept),
+    ) {
+        let places = short.places();
+        let mut candidates = Candidates::new((self, now), at, listed, edge, kept);
+        if let Some(places) = places {
+            candidates.find(places.iter().map(|&place| usize::from(place)));
+            faced.wakes = short.wakes;
+            if places.len() > 1 && self.face_at_a_glance((now, point, at), (&candidates, places), &reach, faced) {
+                return;
+            }
+        }
         let mut way = Way { surfaces: self, now, point, edge, own: None, waiting: None, faced: [None; 2] };
         let mut wakes = f64::INFINITY;
-        let mut look = |candidates: &Candidates<'_>, number: usize, place: usize| {
+        let mut look = |candidates: &Candidates<'_, '_>, number: usize, place: usize| {
             if listed.is_far(place) {
                 wakes = wakes.min(listed.distances[place]);
                 return;
             }
             let triangle = listed.triangles[place];
-            let (found, distance) = candidates.nearest(number, place);
+            let &(found, distance) = candidates.nearest(number);
             // both have moved since the list was made
             wakes = wakes.min(distance - listed.nearer);
             let (reach, depth) = (reach(triangle), self.depths[triangle as usize]);
@@ -74,10 +113,9 @@ impl Surfaces {
                 _ => {}
             }
         };
-        match short.places() {
+        match places {
             Some(places) => {
                 let places = places.iter().map(|&place| usize::from(place));
-                candidates.find(places.clone());
                 places.enumerate().for_each(|(number, place)| look(&candidates, number, place));
             }
             None => {
@@ -86,13 +124,106 @@ impl Surfaces {
                 let away = |place: usize| candidates.stays_away(place, reach(listed.triangles[place]), stays);
                 let nearest = |place: usize| match listed.is_far(place) {
                     true => listed.distances[place],
-                    false => candidates.nearest(place, place).1 - listed.nearer,
+                    false => candidates.nearest(place).1 - listed.nearer,
                 };
                 *short = Shortlist::of(listed.triangles.len(), away, nearest);
             }
         }
         let [first, second] = way.finish();
-        Faced { first, second, wakes: wakes.min(short.wakes) }
+        *faced = Faced { first, second, wakes: wakes.min(short.wakes) };
+    }
+
+    /// The same of a point with one triangle that matters, at a place in its list, as most have, where it is in front
+    /// of that or far off: nothing is to be chosen then. Whether that is all there is to it.
+    #[inline(always)] // as below
+    fn face_alone(
+        &self,
+        of: (Placed<'_>, &Point, DVec3),
+        listed: Listed<'_>,
+        place: usize,
+        (reach, edge): (&impl Fn(u32) -> f64, f64),
+        faced: &mut Faced,
+    ) -> bool {
+        if listed.is_far(place) {
+            faced.wakes = faced.wakes.min(listed.distances[place]);
+            return true;
+        }
+        let (triangle, (now, _, at)) = (listed.triangles[place], of);
+        let found = OnTriangle::nearest(at, self.corners(now.places, triangle));
+        let (distance, depth, reach) = (at.distance(found.at), self.depths[triangle as usize], reach(triangle));
+        faced.wakes = (distance - listed.nearer).min(faced.wakes);
+        if distance > reach && distance > depth {
+            return true;
+        }
+        if found.part != 0 && distance > ON_IT * edge {
+            return false;
+        }
+        self.face_only(of, triangle, &found, [depth, reach], faced)
+    }
+
+    /// The same where all triangles that matter but one at most are far off or beside another, and the point is in
+    /// front of that one. Whether that is all there is to it.
+    fn face_at_a_glance(
+        &self,
+        of: (Placed<'_>, &Point, DVec3),
+        (candidates, places): (&Candidates<'_, '_>, &[u8]),
+        reach: &impl Fn(u32) -> f64,
+        faced: &mut Faced,
+    ) -> bool {
+        let (listed, mut only) = (candidates.listed, None);
+        for (number, place) in places.iter().map(|&place| usize::from(place)).enumerate() {
+            if listed.is_far(place) {
+                faced.wakes = faced.wakes.min(listed.distances[place]);
+                continue;
+            }
+            let (triangle, nearest) = (listed.triangles[place], candidates.nearest(number));
+            faced.wakes = faced.wakes.min(nearest.1 - listed.nearer);
+            let is_far = nearest.1 > reach(triangle) && nearest.1 > self.depths[triangle as usize];
+            let is_before = candidates.is_before(nearest);
+            if is_far || !is_before && candidates.is_beside(triangle, nearest) {
+                continue;
+            }
+            if only.is_some() || !is_before {
+                return false;
+            }
+            only = Some((triangle, &nearest.0));
+        }
+        match only {
+            None => true,
+            Some((triangle, found)) => {
+                let within = [self.depths[triangle as usize], reach(triangle)];
+                self.face_only(of, triangle, found, within, faced)
+            }
+        }
+    }
+
+    /// Faces the only triangle that is in a point's way, which it is in front of, if these look at each other. Whether
+    /// that is known of a node without its own normal.
+    #[inline(always)] // what it is told goes through memory otherwise, which takes as long as all it does
+    fn face_only(
+        &self,
+        (now, point, at): (Placed<'_>, &Point, DVec3),
+        triangle: u32,
+        found: &OnTriangle,
+        [depth, reach]: [f64; 2],
+        faced: &mut Faced,
+    ) -> bool {
+        let normal = now.normals[triangle as usize];
+        if normal == DVec3::ZERO || !found.at.is_finite() {
+            return true;
+        }
+        let gap = (at - found.at).dot(normal);
+        if !(gap >= -depth && gap <= reach) {
+            return true;
+        }
+        let is_turned_away = match point.triangle {
+            Some(own) => normal.dot(now.normals[own as usize]) < TURNED_AWAY,
+            None => self.all_turned_away(now, point.nodes[0], normal),
+        };
+        if is_turned_away {
+            faced.first = Some(Facing { triangle, weights: found.weights, at: found.at, normal, gap });
+        }
+        is_turned_away || point.triangle.is_some()
     }
 
     /// Whether two faces are walls of a corner that the point is in: the second rises before the first. A node on an

@@ -106,7 +106,8 @@ impl Contact {
 
     /// Corrects the tangential force, and gives by how much (N).
     fn rub(&mut self, steps: &[DVec3]) -> DVec3 {
-        if self.friction <= 0.0 || self.yields_along <= 0.0 {
+        let presses = self.pressing > 0.0 || self.rubbing != DVec3::ZERO;
+        if self.friction <= 0.0 || self.yields_along <= 0.0 || !presses {
             return DVec3::ZERO;
         }
         let slip = self.along(self.slip + self.relative(steps));

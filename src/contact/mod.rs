@@ -13,7 +13,7 @@ mod surfaces;
 mod ties;
 
 pub use boxes::Tree;
-pub use candidates::Listed;
+pub use candidates::{Kept, Listed};
 pub use edges::{Crossing, Edge, distance};
 pub use face_points::{bilinear, face_points};
 pub use facing::{Faced, Facing, TURNED_AWAY};

@@ -61,13 +61,20 @@ impl Point {
         Self { body, nodes: [node; 4], weights: [1.0, 0.0, 0.0, 0.0], triangle: None }
     }
 
+    /// Its nodes and their weights.
+    pub fn slices(&self) -> (&[u32], &[f64]) {
+        let count = if self.triangle.is_some() { 4 } else { 1 };
+        (&self.nodes[..count], &self.weights[..count])
+    }
+
     /// Its nodes with their weights.
     pub fn parts(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
-        let count = if self.triangle.is_some() { 4 } else { 1 };
-        self.nodes.into_iter().zip(self.weights).take(count)
+        let (nodes, weights) = self.slices();
+        nodes.iter().copied().zip(weights.iter().copied())
     }
 
     /// Where it is (m).
+    #[inline]
     pub fn place(&self, places: &[DVec3]) -> DVec3 {
         self.parts().map(|(node, weight)| places[node as usize] * weight).sum()
     }
@@ -147,6 +154,18 @@ impl Surfaces {
         let node = self.triangles[triangle as usize][part.saturating_sub(4).min(2)];
         let around = if part > 3 { self.around(node) } else { &[] };
         adjacent.into_iter().chain(around.iter().copied())
+    }
+
+    /// Whether another triangle shares a part of one.
+    pub(super) fn shares_part(&self, other: u32, triangle: u32, part: usize) -> bool {
+        match part {
+            0 => false,
+            1..=3 => self.adjacent[triangle as usize][part - 1] == other,
+            corner => {
+                let node = self.triangles[triangle as usize][(corner - 4).min(2)];
+                self.triangles[other as usize].contains(&node)
+            }
+        }
     }
 
     /// The triangles across the sides of one; `u32::MAX` where there is not exactly one.

@@ -15,7 +15,7 @@ pub struct OnTriangle {
 
 impl OnTriangle {
     /// The place nearest to another one, by the seven regions about the triangle.
-    #[inline]
+    #[inline(always)] // it is handed back in memory otherwise, which takes as long
     pub fn nearest(y: DVec3, [a, b, c]: [DVec3; 3]) -> Self {
         let corner = |corner: usize| {
             let mut weights = [0.0; 3];

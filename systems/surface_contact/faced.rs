@@ -1,8 +1,8 @@
 //! What points face now.
 
-use super::SurfaceContacts;
+use super::{Surface, SurfaceContacts};
 use crate::backend::cpu::Cpu;
-use crate::contact::{Faced, Listed, Placed, Shortlist, Stays};
+use crate::contact::{Faced, Kept, Listed, Placed, Shortlist, Stays};
 
 /// Points that a task looks at.
 const POINTS_A_TASK: usize = 128;
@@ -17,21 +17,31 @@ pub(super) struct Found {
     short: Shortlist,
 }
 
+impl Found {
+    const NONE: Self = Self { place: 0, faced: Faced::NOTHING, short: Shortlist::UNKNOWN };
+}
+
 /// Who is awake: points in the lists that may be near something, as far as nodes have moved since. Whether there are
 /// any.
 pub(super) fn wake(contacts: &mut SurfaceContacts, reach: f64) -> bool {
     let farthest = contacts.farthest(reach) + contacts.surface.motion.lists.moved;
-    let surface = &mut contacts.surface;
-    surface.found.clear();
-    surface.first_wake = f64::INFINITY;
-    for (place, &wake) in (0..).zip(&surface.wake) {
+    let Surface { wake, first_wake, found, .. } = &mut contacts.surface;
+    let mut awake = 0;
+    *first_wake = f64::INFINITY;
+    for (place, &wake) in (0..).zip(&*wake) {
         if farthest < wake {
-            surface.first_wake = surface.first_wake.min(wake);
-        } else {
-            surface.found.push(Found { place, faced: Faced::default(), short: Shortlist::UNKNOWN });
+            *first_wake = first_wake.min(wake);
+            continue;
         }
+        // what was found in the last step is written over
+        match found.get_mut(awake) {
+            Some(found) => found.place = place,
+            None => found.push(Found { place, ..Found::NONE }),
+        }
+        awake += 1;
     }
-    !surface.found.is_empty()
+    found.truncate(awake);
+    awake > 0
 }
 
 /// Finds what those face that are awake.
@@ -44,6 +54,7 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
     // what has moved so far may move back, too
     let stays = Stays { moved: surface.stays.moved + lately, reach: surface.stays.reach - reach };
     cpu.for_each(found.chunks_mut(POINTS_A_TASK), |found| {
+        let mut kept = Kept::default();
         for Found { place, faced, short } in found {
             *short = surface.shortlists[*place as usize];
             let point = &surface.points[surface.lists.points[*place as usize] as usize];
@@ -54,7 +65,7 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
             let place = *place as usize;
             let (triangles, distances) = (surface.lists.triangles(place), surface.lists.distances(place));
             let listed = Listed { triangles, distances, nearer, farthest };
-            *faced = surface.triangles.faced(now, point, listed, (reach_of, contacts.edge), (short, stays));
+            surface.triangles.faced(now, point, listed, (reach_of, contacts.edge), (short, stays), (faced, &mut kept));
             if point.triangle.is_some() {
                 let both = [&mut faced.first, &mut faced.second];
                 both.into_iter().flatten().for_each(|facing| facing.gap = surface.gap_of_facet(point, facing));

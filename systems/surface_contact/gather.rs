@@ -84,18 +84,31 @@ impl Gathered {
     }
 
     /// Adds a contact of these nodes with signed weights, if it ends nearer than `within` (m): see [`ends`].
+    #[inline]
     fn add<T: Scalar>(
         &mut self,
-        (mut contact, met): (Contact, Met),
-        nodes: impl Iterator<Item = (u32, f64)>,
+        (contact, met): (Contact, Met),
+        [of_point, of_face]: [(&[u32], &[f64]); 2],
         (spring, outside, within): (Option<ContactSpring>, f64, f64),
         of: (&Surface, &InStep<'_>),
         bodies: &[BodySlices<'_, T>],
     ) {
-        nodes.for_each(|(node, weight)| contact.add(self.slot_of(node, of, bodies), weight));
-        if ends(&mut contact, (spring, outside), &self.set) < within {
-            self.set.contacts.push(contact);
+        // where it stays if it is one: it is too large to be handed about
+        self.set.contacts.push(contact);
+        for ((nodes, weights), sign) in [(of_point, 1.0), (of_face, -1.0)] {
+            for (&node, &weight) in nodes.iter().zip(weights) {
+                let slot = self.slot_of(node, of, bodies);
+                if let Some(contact) = self.set.contacts.last_mut() {
+                    contact.add(slot, sign * weight);
+                }
+            }
+        }
+        let ContactSet { contacts, steps, earlier, .. } = &mut self.set;
+        let Some(contact) = contacts.last_mut() else { return };
+        if ends(contact, (spring, outside), [steps, earlier]) < within {
             self.met.push(met);
+        } else {
+            contacts.pop();
         }
     }
 }
@@ -159,14 +172,14 @@ pub(super) fn gather<T: Scalar>(
                 false => outside.max(-in_step.settling),
             };
             let (corners, weights) = surface.corners_of(point, facing);
-            let of_face = corners.into_iter().zip(weights).map(|(node, weight)| (node, -weight));
+            let of_face = (&corners[..], &weights[..]);
             let within = if point.triangle.is_some() { SHARES * contacts.edge } else { 0.0 };
             gathered.add(
                 (
                     Contact::new((facing.normal, gap), (friction, slip)),
                     Met { point: number, first: is_first, gap: outside },
                 ),
-                point.parts().chain(of_face),
+                [point.slices(), of_face],
                 (spring, outside - allowed, within),
                 (surface, in_step),
                 bodies,
@@ -181,15 +194,14 @@ pub(super) fn gather<T: Scalar>(
         let outside = crossing.gap - thickness;
         // nothing is known of how it got there, nor of how it slipped
         let gap = outside.max(-in_step.settling);
-        let [of_one, of_other] = crossing.weights;
-        let of_other = other.nodes.into_iter().zip(of_other).map(|(node, weight)| (node, -weight));
+        let [of_one, of_other] = &crossing.weights;
         gathered.add(
             (
                 Contact::new((crossing.normal, gap), (friction[1], DVec3::ZERO)),
                 // nodes are the first of the points
                 Met { point: one.nodes[0], first: false, gap: outside },
             ),
-            one.nodes.into_iter().zip(of_one).chain(of_other),
+            [(&one.nodes, of_one), (&other.nodes, of_other)],
             (spring, outside, 0.0),
             (surface, in_step),
             bodies,
@@ -199,11 +211,15 @@ pub(super) fn gather<T: Scalar>(
 
 /// How far outside (m) a point would end that is to be kept there; with a spring how far it is, which is all that that
 /// asks for: so far outside, or more than it may be inside.
-fn ends(contact: &mut Contact, (spring, outside): (Option<ContactSpring>, f64), set: &ContactSet) -> f64 {
+fn ends(
+    contact: &mut Contact,
+    (spring, outside): (Option<ContactSpring>, f64),
+    [steps, earlier]: [&[DVec3]; 2],
+) -> f64 {
     let Some(spring) = spring else {
-        return contact.gap + contact.normal.dot(contact.relative(&set.steps));
+        return contact.gap + contact.normal.dot(contact.relative(steps));
     };
     contact.springs = true;
-    contact.gap = spring.gap(outside, contact.normal.dot(contact.relative(&set.earlier)));
+    contact.gap = spring.gap(outside, contact.normal.dot(contact.relative(earlier)));
     outside
 }

@@ -11,9 +11,11 @@ fn faced(surfaces: &Surfaces, places: &[DVec3], point: &Point, triangles: &[u32]
     let now = Placed { places, normals: &normals };
     let mut short = Shortlist::UNKNOWN;
     let stays = Stays { moved: 1e-3, reach: 1e-3 };
-    let found = surfaces.faced(now, point, listed, (&reach, 1.0), (&mut short, stays));
+    let [mut found, mut by_short] = [Faced::NOTHING; 2];
+    surfaces.faced(now, point, listed, (&reach, 1.0), (&mut short, stays), (&mut found, &mut Kept::default()));
     // what the shortlist leaves out changes nothing
-    assert_eq!(surfaces.faced(now, point, listed, (&reach, 1.0), (&mut short, stays)), found);
+    surfaces.faced(now, point, listed, (&reach, 1.0), (&mut short, stays), (&mut by_short, &mut Kept::default()));
+    assert_eq!(by_short, found);
     found
 }
 

@@ -1,26 +1,40 @@
 use super::*;
-use crate::contact::{Faced, Listed, Placed, Point, Surfaces};
+use crate::contact::{Faced, Kept, Listed, Placed, Point, Surfaces};
 use glam::DVec3;
 
-/// A wavy sheet of 5 × 5 nodes a metre apart, cut into triangles, and a point of another body.
+/// A wavy sheet of 5 × 5 nodes a metre apart, cut into triangles, and a triangle of another body that looks down on
+/// it, whose nodes have no places yet.
 fn sheet() -> (Surfaces, Vec<DVec3>) {
     let at = |i: u32| DVec3::new(f64::from(i % 5), f64::from(i / 5), 0.3 * f64::from(i).sin());
     let cut = |i: u32| [[i, i + 1, i + 6], [i, i + 6, i + 5]];
     let triangles: Vec<[u32; 3]> = (0..20).filter(|i| i % 5 < 4).flat_map(cut).collect();
     let count = triangles.len();
-    (Surfaces::new(26, triangles, vec![0; count], vec![0.5; count]), (0..25).map(at).collect())
+    let owners = [vec![0; count], vec![1]].concat();
+    let triangles = [triangles, vec![[25, 26, 27]]].concat();
+    (Surfaces::new(28, triangles, owners, vec![0.5; count + 1]), (0..25).map(at).collect())
 }
 
-/// What the point at the end of the places faces, by a shortlist or, where that is not known, by the whole list.
-fn faced(surfaces: &Surfaces, places: &[DVec3], short: &mut Shortlist, stays: Stays) -> Faced {
-    let all: Vec<u32> = (0..surfaces.triangles.len() as u32).collect();
-    let normals: Vec<DVec3> = all.iter().map(|&triangle| surfaces.normal(places, triangle)).collect();
+/// What a point of the other triangle faces, its first corner or one within, by a shortlist or, where that is not
+/// known, by the whole list.
+fn faced(surfaces: &Surfaces, (places, within): (&[DVec3], bool), short: &mut Shortlist, stays: Stays) -> Faced {
+    let other = surfaces.triangles.len() as u32 - 1;
+    let all: Vec<u32> = (0..other).collect();
+    let normals: Vec<DVec3> = (0..=other).map(|triangle| surfaces.normal(places, triangle)).collect();
     let distances = vec![0.0; all.len()];
     let listed = Listed { triangles: &all, distances: &distances, nearer: 0.0, farthest: 1.0 };
     let now = Placed { places, normals: &normals };
-    // it is on no triangle
-    let point = Point::node(1, 25);
-    surfaces.faced(now, &point, listed, (|_| 0.1, 1.0), (short, stays))
+    let point = match within {
+        true => Point {
+            nodes: [25, 26, 27, 27],
+            weights: [0.6, 0.2, 0.2, 0.0],
+            triangle: Some(other),
+            ..Point::node(1, 25)
+        },
+        false => Point::node(1, 25),
+    };
+    let mut found = Faced::NOTHING;
+    surfaces.faced(now, &point, listed, (|_| 0.1, 1.0), (short, stays), (&mut found, &mut Kept::default()));
+    found
 }
 
 /// However nodes move that a shortlist allows for: what it leaves out changes nothing of what is faced. And it
@@ -34,19 +48,22 @@ fn shortlists_have_all_that_may_be_faced() {
         let mut vector = |size: f64| size * (DVec3::new(random.f64(), random.f64(), random.f64()) - 0.5);
         let (place, stays) = (vector(1.0), Stays { moved: 0.02, reach: 0.0 });
         let mut before = flat.clone();
-        before.push(DVec3::new(2.0 + place.x, 2.0 + place.y, flat[12].z + 0.3 * place.z));
+        let (corner, within) = (DVec3::new(2.0 + place.x, 2.0 + place.y, flat[12].z + 0.3 * place.z), round % 2 == 1);
+        // in some rounds it looks the other way
+        let across = if round % 8 < 6 { [DVec3::Y, DVec3::X] } else { [DVec3::X, DVec3::Y] };
+        before.extend([corner, corner + 0.1 * across[0], corner + 0.1 * across[1]]);
         let mut short = Shortlist::UNKNOWN;
-        faced(&surfaces, &before, &mut short, stays);
+        faced(&surfaces, (&before, within), &mut short, stays);
         let Some(places) = short.places() else { continue };
         known += 1;
         left += places.len();
         for _ in 0..20 {
             // each within half of what two may move against each other
-            let within = stays.moved / 3.0_f64.sqrt();
-            let after: Vec<DVec3> = before.iter().map(|&at| at + vector(within)).collect();
+            let half = stays.moved / 3.0_f64.sqrt();
+            let after: Vec<DVec3> = before.iter().map(|&at| at + vector(half)).collect();
             let [mut unknown, mut same] = [Shortlist::UNKNOWN, short];
-            let by_list = faced(&surfaces, &after, &mut unknown, stays);
-            let by_short = faced(&surfaces, &after, &mut same, stays);
+            let by_list = faced(&surfaces, (&after, within), &mut unknown, stays);
+            let by_short = faced(&surfaces, (&after, within), &mut same, stays);
             assert_eq!((by_short.first, by_short.second), (by_list.first, by_list.second), "{round}");
             assert!(by_short.wakes <= by_list.wakes + stays.moved, "{round}");
             faces += usize::from(by_list.first.is_some());
