@@ -91,8 +91,7 @@ pub trait Element: Copy + Send + Sync + 'static {
     /// hourglass control is scaled by.
     fn rest_shape(points: &[DVec3], young: f64) -> [f64; MOST_ROWS];
 
-    /// Two edges that frame it, or their sums over the element, in rest positions (m): each is F times itself at rest in
-    /// every homogeneous deformation. `None` of element types that no frame is made for.
+    /// Two edges at rest that frame it, or sums of its edges (m). `None` of element types that no frame is made for.
     fn frame(_points: &[DVec3]) -> Option<[DVec3; 2]> {
         None
     }

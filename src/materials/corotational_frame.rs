@@ -4,12 +4,12 @@ use super::{Elastic, Kinematics, Linear};
 use crate::math::{Mat3, Real, Sym3, Task, dot, dot_plus, minor};
 use bevy_ecs::prelude::Component;
 
-/// P = R (2μ ε + λ tr ε I), ε = sym(RᵀF − I), R = D(F) D(I)ᵀ with the frame D of two edges of the element: the first, and
-/// what of the second is across it (Nesme, Payan & Faure 2005; its WGSL twin is `shaders/corotational_frame.wgsl`). Each
-/// element has edges of its own.
+/// P = R (2μ ε + λ tr ε I), ε = sym(RᵀF − I), R = D(F) D(I)ᵀ with the frame D of two edges of the element: the first,
+/// and what of the second is across it (Nesme, Payan & Faure 2005; its WGSL twin is `shaders/corotational_frame.wgsl`).
+/// Each element has edges of its own.
 ///
-/// Objective, but P Fᵀ is not symmetric, so that elements are turned by their own forces, and it is the derivative of no
-/// energy: what is told as such is μ dev ε:dev ε + κ/2 tr² ε, from which the work of P along a closed way differs.
+/// Objective, but P Fᵀ is not symmetric, so that elements are turned by their own forces, and it is the derivative of
+/// no energy: what is told as such is μ dev ε:dev ε + κ/2 tr² ε, which the work of P is not.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub struct CorotationalFrame<T: Send + Sync + 'static> {
     /// The law in the frame.
