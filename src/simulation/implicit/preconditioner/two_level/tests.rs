@@ -44,6 +44,7 @@ impl Made {
             free: &self.motion.free,
             inertia: &self.inertia,
             stiffness: 1.0,
+            springs: &[],
         }
     }
 
