@@ -18,8 +18,8 @@ pub(in super::super) use coarse::Coarse;
 use glam::{DMat3, DVec3};
 
 /// B r = Q (D⁻¹ + P A⁻¹ Pᵀ) Qᵀ r, D the diagonal blocks, P the rigid motions of aggregates of some 30 nodes, A = Pᵀ
-/// (D + c K) P their dense matrix, a piece of a body each, Q the rotations of the aggregates. Springs that touch are in D,
-/// and in A those that act on one piece alone.
+/// (D + c K) P their dense matrix, a piece of a body each, Q the rotations of the aggregates. Springs that touch are in
+/// D, and in A those that act on one piece alone.
 ///
 /// Of a piece that nothing holds along an axis, what it does as a whole is solved apart from that: B t = t tᵀ r / tᵀ D
 /// t along its translation t, and the rest of B without a mean motion. So it keeps its linear momentum however early a
