@@ -104,6 +104,12 @@ pub const SHORTFALLS: &[Shortfall] = &[
         why: "of an edge across an edge where their nodes meet, whose node is by turns on one of four faces, the weight is .6 to 6 % off after 1.5 s, where it is to be at rest; with `edges: true` it rests within 1e-3",
     },
     Shortfall {
+        case: "h62",
+        on: |c, _| c.implicit,
+        verdict: CaseVerdict::Failed,
+        why: "thread and glue bear their strength, but 37 to 50 % of what was spent is not in the case's balance, which leaves out what the formula takes where bars swing back",
+    },
+    Shortfall {
         case: "h41",
         on: |c, _| !c.implicit && c.elements == ElementKind::Hex8MeanDilatation,
         verdict: CaseVerdict::Failed,
