@@ -153,14 +153,14 @@ fn element_materials<'a>(
     (!diagnostics.has_errors()).then_some(materials)
 }
 
-struct BlockBuilder<'a> {
+pub(super) struct BlockBuilder<'a> {
     assembly: &'a Assembly<'a>,
     mesh: &'a Mesh,
     copies: usize,
     node_rows: &'a [u32],
-    kind: ElementKind,
+    pub(super) kind: ElementKind,
     material: Entity,
-    elements: &'a [u32],
+    pub(super) elements: &'a [u32],
 }
 
 impl BlockBuilder<'_> {
@@ -172,7 +172,10 @@ impl BlockBuilder<'_> {
         let members = Members { mesh: self.mesh, elements: self.elements, body: name, material: &material_name };
         let material = &called_for(&self.assembly.scene.scene.materials[&material_name]);
         let (fibre_directions, varying) = members.directions(material, self.assembly.precision, diagnostics);
-        let per_copy = self.per_copy(name, &material_name);
+        let per_copy = match &law {
+            Some(ElasticLaw::CorotationalFrame(law)) => self.framed(law, (name, &material_name), diagnostics),
+            _ => self.per_copy(name, &material_name),
+        };
         let stiffness = |row: usize| {
             let of_copy = per_copy.as_ref().map(|copies| young(copies.of_row(row).elastic.small_strain_moduli()));
             hourglass * of_copy.unwrap_or(of_all)
@@ -243,7 +246,7 @@ impl BlockBuilder<'_> {
     }
 
     /// Rest positions of an element's nodes (m).
-    fn points(&self, element: u32) -> [DVec3; MOST_NODES] {
+    pub(super) fn points(&self, element: u32) -> [DVec3; MOST_NODES] {
         let mut points = [DVec3::ZERO; MOST_NODES];
         for (place, &node) in self.mesh.element(element as usize).iter().enumerate() {
             points[place] = self.mesh.points[node as usize];

@@ -140,7 +140,7 @@ macro_rules! insert_any {
         }
     };
 }
-each_elastic_law!(insert_any law: UserLaw;);
+each_elastic_law!(insert_any corotational_frame: CorotationalFrame; law: UserLaw;);
 
 /// Directions of all families of fibres, with the fields they stand in: `fibres` first, then `exponential_fibres`.
 pub(super) fn directions(material: &Material) -> Vec<(String, &schema::Direction)> {

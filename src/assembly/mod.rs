@@ -8,6 +8,7 @@ mod constraints;
 mod contacts;
 mod element_removal;
 mod fibres;
+mod frames;
 mod free_tools;
 mod glue;
 mod grasps;

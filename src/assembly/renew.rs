@@ -37,6 +37,11 @@ pub fn renew_materials(made: &Scene, now: &Scene, world: &mut World) -> Vec<(Ent
 /// Takes the parameters that each copy has now, where they differ.
 fn renew_copies(entity: Entity, (made, now): (&Scene, &Scene), world: &mut World) {
     let (Some(block), Some(PerCopyLaw(before))) = (world.get::<Block>(entity), world.get(entity)) else { return };
+    if let Some(ElasticLaw::CorotationalFrame(law)) = ElasticLaw::of(world.entity(block.material)) {
+        let copies = super::frames::with_moduli(before, &law);
+        world.entity_mut(entity).insert(PerCopyLaw(Arc::new(copies)));
+        return;
+    }
     let (Some(body), Some(material)) = (world.get::<Label>(block.body), world.get::<Label>(block.material)) else {
         return;
     };

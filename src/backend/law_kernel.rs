@@ -109,6 +109,13 @@ pub(super) struct ElasticPart {
     pub layout: Option<Layout>,
 }
 
+/// A law whose numbers are all of each element; in the order in which it has them.
+const OF_FRAME: Layout = Layout {
+    name: "CorotationalFrame",
+    size: 48,
+    members: &[("shear", 0, 4), ("bulk", 4, 4), ("along", 16, 12), ("across", 32, 12)],
+};
+
 macro_rules! elastic_parts {
     ($($(#[$doc:meta])* $word:ident: $law:ident;)*) => {
         impl ElasticPart {
@@ -119,6 +126,11 @@ macro_rules! elastic_parts {
                         bytes: law.bytes(),
                         layout: Some(<materials::$law<f32> as Uniform>::LAYOUT),
                     },)*
+                    ElasticLaw::CorotationalFrame(_) => Self {
+                        fragment: Some(shader!("corotational_frame")),
+                        bytes: Vec::new(),
+                        layout: Some(OF_FRAME),
+                    },
                     ElasticLaw::UserLaw(law) => Self {
                         fragment: None,
                         bytes: law.parts().uniform.clone(),
@@ -132,6 +144,7 @@ macro_rules! elastic_parts {
         pub(super) fn prerequisites(law: &ElasticLaw<f32>) -> Vec<Fragment> {
             let files = match law {
                 $(ElasticLaw::$law(_) => <materials::$law<f64> as Law>::PREREQUISITES,)*
+                ElasticLaw::CorotationalFrame(_) => &[Prerequisite::SmallStrain],
                 ElasticLaw::UserLaw(_) => &[Prerequisite::FiniteStrain, Prerequisite::VolumeRatio],
             };
             files.iter().copied().map(fragment).collect()
@@ -144,6 +157,7 @@ fn fragment(support: Prerequisite) -> Fragment {
     match support {
         Prerequisite::FiniteStrain => shader!("finite_strain"),
         Prerequisite::VolumeRatio => shader!("volume_ratio"),
+        Prerequisite::SmallStrain => shader!("small_strain"),
         Prerequisite::Eigen => shader!("eigen"),
         Prerequisite::Elementary => shader!("elementary"),
         Prerequisite::Invariants => shader!("invariants"),

@@ -149,6 +149,12 @@ impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
     // of a parallelepiped's sums over its corners ξ x is four edges long
     const SPANNED_BY: Option<([usize; 4], f64)> = if SLOPES == 3 { Some(([0, 1, 3, 4], 0.25)) } else { None };
 
+    /// Sums of the edges along ξ and along η, as SOFA's hexahedra have them.
+    fn frame(points: &[DVec3]) -> Option<[DVec3; 2]> {
+        let sum = |mode: usize| (0..8).map(|a| (points[a] - points[0]) * mode_sign(mode, a)).sum();
+        Some([sum(0), sum(1)])
+    }
+
     fn rest_shape(points: &[DVec3], young: f64) -> [f64; MOST_ROWS] {
         let (volume, b) = mean_gradients(points);
         let mut shape = [0.0; MOST_ROWS];

@@ -91,6 +91,11 @@ pub trait Element: Copy + Send + Sync + 'static {
     /// hourglass control is scaled by.
     fn rest_shape(points: &[DVec3], young: f64) -> [f64; MOST_ROWS];
 
+    /// Two edges at rest that frame it, or sums of its edges (m). `None` of element types that no frame is made for.
+    fn frame(_points: &[DVec3]) -> Option<[DVec3; 2]> {
+        None
+    }
+
     /// Whether it can have that shape: the nodes' rest positions (m).
     fn describes(_points: &[DVec3]) -> bool {
         true

@@ -35,6 +35,10 @@ impl Element for Tet4 {
         shape
     }
 
+    fn frame(points: &[DVec3]) -> Option<[DVec3; 2]> {
+        Some([points[1] - points[0], points[2] - points[0]])
+    }
+
     type Specialisation = Self;
     type Prepared<R: Real> = [[R; 3]; 3];
     type Forces<R: Real> = Mat3<R>;

@@ -1,10 +1,10 @@
 //! Hooke's law in the frame that turns with the material.
 
-use super::elasticity::by_moduli;
-use super::{Elastic, J_FLOOR, Kinematics, Law, Prerequisite};
+use super::{Complaints, CorotationalFrame, Elastic, Elasticity, J_FLOOR, Kinematics, Law, Linear, Prerequisite};
 use crate::math::{Mat3, Polar, Real, Sym3, Task, dot, dot_plus, minor};
 use crate::uniform::uniform;
 use bevy_ecs::component::Component;
+use serde::{Deserialize, Serialize};
 
 /// Ψ = μ |F − R|² + λ/2 tr²(RᵀF − I) with the rotation R of F = R U (Chao, Pinkall, Sanan & Schröder 2010; with R of an
 /// element's edges Müller & Gross 2004; its WGSL twin is `shaders/corotational.wgsl`), so P = 2μ(F − R) + λ tr(RᵀF − I)
@@ -24,10 +24,88 @@ pub struct Corotational<T: Send + Sync + 'static> {
 
 uniform!(Corotational<f32> { shear, bulk });
 
+/// Moduli of a co-rotational law, as one of two pairs, and which rotation it turns by.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub enum CorotationalParameters {
+    /// Young's modulus (Pa) and Poisson's ratio, both of small strains.
+    Young {
+        /// Young's modulus (Pa).
+        young: f64,
+        /// Poisson's ratio, below 1/2.
+        poisson: f64,
+        /// Which rotation of an element.
+        #[serde(default, skip_serializing_if = "Rotation::is_polar")]
+        rotation: Rotation,
+    },
+    /// Shear modulus and bulk modulus.
+    Moduli {
+        /// Shear modulus μ (Pa).
+        shear: f64,
+        /// Bulk modulus κ (Pa).
+        bulk: f64,
+        /// Which rotation of an element.
+        #[serde(default, skip_serializing_if = "Rotation::is_polar")]
+        rotation: Rotation,
+    },
+}
+
+/// Which rotation a co-rotational law takes out of a deformation.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
+pub enum Rotation {
+    /// That of F = R U.
+    #[default]
+    Polar,
+    /// That of a frame of two edges, of tetrahedra with four nodes and hexahedra with eight.
+    Frame,
+}
+
+impl Rotation {
+    fn is_polar(&self) -> bool {
+        *self == Self::Polar
+    }
+}
+
+impl CorotationalParameters {
+    fn elasticity(&self) -> Elasticity {
+        match *self {
+            Self::Young { young, poisson, .. } => Elasticity::Young { young, poisson },
+            Self::Moduli { shear, bulk, .. } => Elasticity::Moduli { shear, bulk },
+        }
+    }
+
+    /// Which rotation.
+    pub fn rotation(&mut self) -> &mut Rotation {
+        match self {
+            Self::Young { rotation, .. } | Self::Moduli { rotation, .. } => rotation,
+        }
+    }
+
+    /// The law by frames, of no element yet, if it is that.
+    pub fn by_frame(mut self) -> Option<CorotationalFrame<f64>> {
+        let (shear, bulk) = self.elasticity().moduli();
+        let law = CorotationalFrame { linear: Linear { shear, bulk }, along: [1.0, 0.0, 0.0], across: [0.0, 1.0, 0.0] };
+        (*self.rotation() == Rotation::Frame).then_some(law)
+    }
+}
+
 impl Law for Corotational<f64> {
     const PREREQUISITES: &'static [Prerequisite] = &[Prerequisite::Eigen];
     const IS_COMPARED: bool = false;
-    by_moduli!();
+    type Parameters = CorotationalParameters;
+
+    fn of(parameters: &CorotationalParameters) -> Self {
+        let (shear, bulk) = parameters.elasticity().moduli();
+        Self { shear, bulk }
+    }
+
+    fn check(parameters: &CorotationalParameters, complaints: &mut Complaints) {
+        parameters.elasticity().check(complaints);
+    }
+
+    fn with_moduli(shear: f64, bulk: f64) -> CorotationalParameters {
+        CorotationalParameters::Moduli { shear, bulk, rotation: Rotation::Polar }
+    }
 }
 
 /// Principal stretches and directions at rest, a right-handed frame; the least stretch is the last and has the sign of

@@ -267,7 +267,7 @@ macro_rules! elastic_laws {
         }
     };
 }
-each_elastic_law!(elastic_laws law: UserLaw;);
+each_elastic_law!(elastic_laws corotational_frame: CorotationalFrame; law: UserLaw;);
 
 macro_rules! texts {
     ($($(#[$doc:meta])* $word:ident: $law:ident;)*) => {

@@ -59,13 +59,19 @@ impl<R: Real> Kinematics<R> {
     #[inline(always)]
     pub fn linear(gradient: &Mat3<R>) -> Self {
         let h = &gradient.0;
-        let (zero, half, one) = (h[0][0].constant(0.0), h[0][0].constant(0.5), h[0][0].constant(1.0));
+        let half = h[0][0].constant(0.5);
         let shears = [half * (h[0][1] + h[1][0]), half * (h[1][2] + h[2][1]), half * (h[0][2] + h[2][0])];
-        let trace = h[0][0] + h[1][1] + h[2][2];
+        Self::of_small_strain(Sym3([h[0][0], h[1][1], h[2][2], shears[0], shears[1], shears[2]]), gradient)
+    }
+
+    /// The same of another small strain, such as one in a frame that turns.
+    #[inline(always)]
+    pub(super) fn of_small_strain(strain: Sym3<R>, gradient: &Mat3<R>) -> Self {
+        let (zero, one) = (gradient.0[0][0].constant(0.0), gradient.0[0][0].constant(1.0));
         Self {
-            green_strain: Sym3([h[0][0], h[1][1], h[2][2], shears[0], shears[1], shears[2]]),
+            green_strain: strain,
             adjugate_c: Sym3([one, one, one, zero, zero, zero]),
-            volume_change: trace,
+            volume_change: strain.trace(),
             j: one,
             true_j: one + gradient.volume_change(),
             j_m23: one,

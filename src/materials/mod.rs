@@ -8,6 +8,7 @@ mod arruda_boyce;
 #[doc(hidden)]
 pub mod complaints;
 mod corotational;
+mod corotational_frame;
 mod elastic;
 mod elasticity;
 mod exponential_fibres;
@@ -35,6 +36,10 @@ pub use law::RustLaw;
 // what the engine, the crates on top and tests see beside: no version keeps their names and types
 #[doc(hidden)]
 pub use complaints::Complaints;
+#[doc(hidden)]
+pub use corotational::{CorotationalParameters, Rotation};
+#[doc(hidden)]
+pub use corotational_frame::CorotationalFrame;
 #[doc(hidden)]
 pub use elastic::{ElasticLaw, TEXTS};
 #[doc(hidden)]

@@ -71,7 +71,9 @@ pub fn split(key: &str) -> Result<(String, Path), String> {
 pub fn parameters(material: &Material) -> Vec<String> {
     let Ok(text) = ron::to_string(material) else { return Vec::new() };
     let mut all = Vec::new();
-    let laws = material.elastic_laws().into_iter().filter(|law| *law != "law");
+    // what differs from element to element is no copy's
+    let differs = |law: &&str| *law == "law" || material.by_frame().is_some();
+    let laws = material.elastic_laws().into_iter().filter(|law| !differs(law));
     for place in laws.chain(["fibres", "exponential_fibres"]) {
         let way = Path::default().name(place);
         if let Ok(node) = way.find(&parse(&text).root) {

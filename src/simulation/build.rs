@@ -318,8 +318,9 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
     observer.touches = scene.scene.touches();
     observer.snapshots = scene.scene.output.snapshots_every.filter(|_| !scene.scene.is_static()).map(every);
     let mut limits = scene.scene.guards.clone();
-    if scene.scene.is_implicit() {
-        // what central differences keep is no measure of other formulas
+    let without_energy = scene.scene.materials.values().any(|material| material.by_frame().is_some());
+    if scene.scene.is_implicit() || without_energy {
+        // what central differences keep is no measure of other formulas, nor of forces that have no energy
         limits.off.push(Guard::Energy);
     }
     observer.guard_settings = GuardSettings {

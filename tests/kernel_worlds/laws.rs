@@ -13,6 +13,9 @@ pub const LAWS: [&str; 10] = [
     "corotational: Moduli(shear: 1034, bulk: 10000)",
 ];
 
+/// A law of which each element has numbers of its own.
+pub const FRAMED: &str = "corotational: Moduli(shear: 1034, bulk: 10000, rotation: Frame)";
+
 /// For each of the built-in laws of [`LAWS`] numbers that two copies may have.
 pub const VARIED: [(&str, &str); 8] = [
     (LAWS[0], "\"tissue.linear.shear\": Values([700, 1500])"),

@@ -14,7 +14,7 @@ use std::sync::Arc;
 mod laws;
 mod noise;
 #[allow(unused_imports)]
-pub use laws::{ALONG, AROUND, FAMILIES, GROWING, LAWS, VARIED};
+pub use laws::{ALONG, AROUND, FAMILIES, FRAMED, GROWING, LAWS, VARIED};
 #[allow(unused_imports)]
 pub use noise::{Noise, randomize, scale_strains, small_strains};
 
@@ -107,6 +107,9 @@ impl Effects {
                 all.push(Self { volumetric: true, reproject: true, ..plain });
             }
         }
+        let framed = Self { law: Some(FRAMED), removal: true, ..Self::default() };
+        all.push(Self { prony: 1, volumetric: true, scheme: Scheme::TwoPass, ..framed.clone() });
+        all.push(framed);
         let at_rest = Self { at_rest: true, prony: 1, damping: true, moved: true, ..Self::default() };
         for (loads, compensated) in [(false, false), (false, true), (true, false), (true, true)] {
             all.push(Self { loads, compensated, ..at_rest.clone() });

@@ -1,6 +1,8 @@
 //! `element_forces`.
 
-use super::kernel_worlds::{ALONG, AROUND, Effects, FAMILIES, GROWING, LAWS, VARIED, scale_strains, small_strains};
+use super::kernel_worlds::{
+    ALONG, AROUND, Effects, FAMILIES, FRAMED, GROWING, LAWS, VARIED, scale_strains, small_strains,
+};
 use super::magnitude::{OGDEN_ROUNDINGS, ROUNDINGS, magnitude};
 use super::pair::{Pair, UNIT, entities, run};
 use bevy_ecs::prelude::*;
@@ -242,6 +244,16 @@ fn copies_exert_the_same_forces(laws: &[(&'static str, &'static str)]) {
             |_| {},
         );
     }
+}
+
+/// A law in frames of edges, each element's own: alone, viscous, in parallelepipeds and with elements gone.
+#[test]
+fn laws_in_frames_of_edges_exert_the_same_forces() {
+    let framed = Effects { law: Some(FRAMED), ..Effects::default() };
+    compare_element_forces(&framed, |_| {});
+    compare_element_forces(&Effects { volumetric: true, prony: 2, ..framed.clone() }, small_strains);
+    compare_element_forces(&Effects { cells: true, scheme: Scheme::TwoPass, ..framed.clone() }, |_| {});
+    compare_element_forces(&Effects { removal: true, ..framed }, deactivate_some);
 }
 
 /// Strains of 1e-4, at which an energy is 1e-8 of the numbers in its formula.

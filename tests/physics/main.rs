@@ -14,6 +14,7 @@ mod configurations;
 mod conservation;
 mod copies;
 mod determinism;
+mod edge_frames;
 mod elastica;
 mod elements;
 mod endings;

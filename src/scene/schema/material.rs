@@ -1,6 +1,6 @@
 //! Materials and their effects.
 
-use crate::materials::{self, Complaints, Elastic, ElasticLaw, Law, each_elastic_law};
+use crate::materials::{self, Complaints, CorotationalFrame, Elastic, ElasticLaw, Law, each_elastic_law};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -70,6 +70,9 @@ macro_rules! material {
 
             /// Its elastic law, unless that is one of the user's own.
             pub fn elastic_law(&self) -> Option<ElasticLaw<f64>> {
+                if let Some(law) = self.by_frame() {
+                    return Some(ElasticLaw::CorotationalFrame(law));
+                }
                 $(if let Some(parameters) = &self.$word {
                     return Some(ElasticLaw::$law(Law::of(parameters)));
                 })*
@@ -105,9 +108,14 @@ macro_rules! material {
 
             /// Takes the parameters of another's elastic law where that is of the same kind.
             pub fn take_law_parameters(&mut self, other: &Material) {
+                let rotation = self.corotational.as_mut().map(|own| *own.rotation());
                 $(if let (Some(own), Some(other)) = (&mut self.$word, &other.$word) {
                     own.clone_from(other);
                 })*
+                // which kind of law it is stays as it is
+                if let (Some(own), Some(rotation)) = (&mut self.corotational, rotation) {
+                    *own.rotation() = rotation;
+                }
             }
 
             /// Whether its elastic law has a stress inside out, too.
@@ -131,6 +139,11 @@ pub enum Inversion {
 }
 
 impl Material {
+    /// Its law, of no element yet, where that turns by frames of edges.
+    pub fn by_frame(&self) -> Option<CorotationalFrame<f64>> {
+        self.corotational?.by_frame()
+    }
+
     /// What keeps its elements from recovering when they are turned inside out; `None` where they can.
     pub fn cannot_recover_because_of(&self) -> Option<&'static str> {
         let needs = [

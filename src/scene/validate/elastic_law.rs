@@ -36,15 +36,19 @@ pub(super) fn validate(validator: &mut Validator, path: &Path, name: &str, mater
         own_law(validator, &path.name("law"), law);
     }
     let large = laws_for_large_strains();
+    let by_frame = if material.by_frame().is_some() { " with `rotation: Frame`" } else { "" };
     if let [word] = material.elastic_laws()[..]
-        && !large.contains(&word)
+        && (!large.contains(&word) || !by_frame.is_empty())
     {
         let fibres =
             [("fibres", material.fibres.is_some()), ("exponential_fibres", material.exponential_fibres.is_some())];
         for (effect, _) in fibres.into_iter().filter(|(_, there)| *there) {
             validator
                 .out
-                .error_at(path.name(effect), format!("`{effect}` need an elastic law for large strains, not `{word}`"))
+                .error_at(
+                    path.name(effect),
+                    format!("`{effect}` need an elastic law for large strains, not `{word}`{by_frame}"),
+                )
                 .note(format!("elastic laws: {}", large.join(", ")));
         }
     }

@@ -66,6 +66,14 @@ fn guards(scene_: &Scene, validator: &mut Validator) {
             .error_at(path.name("off"), "a step beyond the stable one needs the balance of energy")
             .note("it is what shows that the step was too large; leave `Energy` out of `off`");
     }
+    let without_energy = scene_.materials.iter().find(|(_, material)| material.by_frame().is_some());
+    if let (Some((name, _)), true) = (without_energy, scene_.integration.beyond_stable_step) {
+        let message = "a step beyond the stable one needs the balance of energy, and a law in frames has no energy";
+        validator
+            .out
+            .error_at(scene("integration").name("beyond_stable_step"), message)
+            .note(format!("the material `{name}` has `rotation: Frame`; `Polar` has an energy"));
+    }
 }
 
 /// A time between two things that happen.

@@ -5,7 +5,7 @@ use crate::backend::cpu::{BlockLaw, Cpu, PerCopyLaw, kernel_effects};
 use crate::backend::user_law::LawCheck;
 use crate::components::*;
 use crate::elements::with_element;
-use crate::materials::{Elastic, ElasticLaw, ExponentialFibre, Fibres, UserLaw};
+use crate::materials::{CorotationalFrame, Elastic, ElasticLaw, ExponentialFibre, Fibres, UserLaw};
 use crate::math::LANES;
 use crate::scene::SceneFile;
 use crate::scene::schema::{InitialState, Inversion, Scene};
@@ -53,6 +53,7 @@ fn name(world: &World, entity: Entity) -> String {
 fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &str, world: &World) -> Vec<Effect> {
     let in_material = |word: &str| format!("`{word}` in the material {material}");
     let elastic = ElasticLaw::of(world.entity(block.material));
+    let of_frames = world.entity(block.material).contains::<CorotationalFrame<f64>>();
     let fibres = world.get::<Fibres<f64>>(block.material);
     let families = world.get::<ExponentialFibres>(block.material);
     let prony = world.get::<Prony>(block.material);
@@ -70,7 +71,7 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
         },
         Effect {
             name: "parameters per copy",
-            on: entity.get::<PerCopyLaw>().map(|PerCopyLaw(copies)| {
+            on: entity.get::<PerCopyLaw>().filter(|_| !of_frames).map(|PerCopyLaw(copies)| {
                 let moduli = copies.of_copy.iter().map(|of_copy| of_copy.elastic.small_strain_moduli()[0]);
                 let ends =
                     moduli.fold((f64::INFINITY, 0.0_f64), |(low, high), shear| (low.min(shear), high.max(shear)));
@@ -78,6 +79,11 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
                 format!("{} copies, shear moduli from {low} to {high} Pa", copies.of_copy.len())
             }),
             turned_on_by: format!("`per_copy` in the body {body}"),
+        },
+        Effect {
+            name: "frames of edges",
+            on: of_frames.then(|| "the law turns with two edges of each element; no energy is balanced".into()),
+            turned_on_by: format!("`rotation: Frame` of `corotational` in the material {material}"),
         },
         Effect {
             name: "averaged nodal pressure",

@@ -99,6 +99,7 @@ impl Iterations {
             free: &motion.free,
             inertia: &space.inertia,
             stiffness: formula.stiffness(),
+            springs: &[],
         });
         let (made_of, mut held) = preconditioner.holds();
         let forces = passes.iter().filter(|pass| pass.finds_forces).map(|pass| pass.name.as_str());

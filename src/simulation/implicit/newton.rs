@@ -357,12 +357,15 @@ impl Newton<'_, '_> {
     fn follow(&mut self) {
         // the world is where the residual was taken
         self.trial.axes.displace(self.trial.world, &self.space.w);
+        let formula = &self.settings.formula;
+        let springs = self.trial.springs.slopes(formula.stiffness(), formula.step());
         self.preconditioner.follow(&Operator {
             world: self.trial.world,
             bodies: &self.trial.axes.bodies,
             free: &self.motion.free,
             inertia: &self.space.inertia,
-            stiffness: self.settings.formula.stiffness(),
+            stiffness: formula.stiffness(),
+            springs: &springs,
         });
     }
 }

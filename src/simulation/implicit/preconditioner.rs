@@ -26,6 +26,16 @@ pub(in crate::simulation) struct Operator<'a> {
     pub inertia: &'a [f64],
     /// c, the share of K.
     pub stiffness: f64,
+    /// The springs that touch.
+    pub springs: &'a [SpringSlope<'a>],
+}
+
+/// A spring as a part of the operator.
+pub(in crate::simulation) struct SpringSlope<'a> {
+    /// First axes of its nodes, with signed weights.
+    pub parts: &'a [(usize, f64)],
+    /// What its force falls by (N/m), c and all: 3 × 3, symmetric.
+    pub slope: DMat3,
 }
 
 /// An approximate inverse B of the operator: symmetric and positive definite on free axes, the same from one residual

@@ -2,6 +2,7 @@
 //! the place at which a Newton iteration takes its tangent: a difference of forces would see some let go, others not.
 
 use super::axes::Axes;
+use super::preconditioner::SpringSlope;
 use crate::components::{Clock, SpringForces, TouchingSpring};
 use crate::error::Error;
 use crate::systems::{find_surface_springs, find_thread_springs, find_tool_springs, seek_surfaces};
@@ -55,6 +56,12 @@ impl Springs {
             let [of_place, of_step] = spring.slopes;
             spring.add((of_place + of_step * step) * spring.relative(p) * share, image);
         }
+    }
+
+    /// Those that touch, with a share of their slopes as [`add_product`](Self::add_product) has it (N/m).
+    pub fn slopes(&self, share: f64, step: f64) -> Vec<SpringSlope<'_>> {
+        let slope = |spring: &TouchingSpring| (spring.slopes[0] + spring.slopes[1] * step) * share;
+        self.touching.iter().map(|spring| SpringSlope { parts: &spring.parts, slope: slope(spring) }).collect()
     }
 
     /// Whether they resist a motion of all axes (m).

@@ -5,6 +5,8 @@
 pub enum Implicitly {
     /// With this put into its scene, and without the scene's `integration`, which is that of explicit steps.
     By(&'static str),
+    /// The same, with springs of this share in place of the kinematic law of all its contacts.
+    BySprings(&'static str, f64),
     /// It has no meaning there, and why.
     NotMeant(&'static str),
 }
@@ -35,9 +37,38 @@ pub const IMPACT: Implicitly = Implicitly::By("solver=Implicit(step: 1e-5, toler
 /// Rest by Newton's iterations.
 pub const NEWTON: Implicitly = Implicitly::By("analysis=Static(method: Newton)");
 
-/// What a scene of contact says.
-pub const CONTACT: Implicitly =
-    Implicitly::NotMeant("its contact is kinematic, a correction of explicit steps that implicit ones do not have");
+/// Contact by frames of 10 ms, of springs ten times as stiff as explicit steps could have them.
+pub const TOUCHING: Implicitly = Implicitly::BySprings("solver=Implicit(tolerance: 1e-6)", 10.0);
+
+/// The same by steps of 1 ms.
+pub const SLIDING: Implicitly = Implicitly::BySprings("solver=Implicit(step: 0.001, tolerance: 1e-6)", 10.0);
+
+/// What meets and parts, by the trapezoidal rule in steps of .1 ms, of springs as stiff as elements.
+pub const MEETING: Implicitly = Implicitly::BySprings(
+    "solver=Implicit(scheme: GeneralizedAlpha(high_frequencies: 1), step: 1e-4, tolerance: 1e-8)",
+    1.0,
+);
+
+/// Rest in contact by Newton's iterations.
+pub const PRESSED: Implicitly = Implicitly::BySprings("analysis=Static(method: Newton)", 10.0);
+
+/// What is about the kinematic law.
+pub const KINEMATIC: Implicitly =
+    Implicitly::NotMeant("it is about what the kinematic law takes in a step, which implicit steps do not have");
+
+/// What is about the stiffest spring.
+pub const STIFFEST: Implicitly =
+    Implicitly::NotMeant("it is about the stiffest spring of a stable step, and implicit steps have no such bound");
+
+/// What is faster than contact is looked for.
+pub const TOO_FAST: Implicitly =
+    Implicitly::NotMeant("it is about how far a needle goes in a stable step; implicit ones refuse half an edge");
+
+/// What has not been run to its end.
+pub const LONG: Implicitly = Implicitly::NotMeant("not known: it has not been run to its end by implicit steps yet");
+
+/// What sucks.
+pub const SUCTION: Implicitly = Implicitly::NotMeant("suction takes no part in implicit steps");
 
 /// What a system of the case's own writes on the host.
 pub const ON_HOST: Implicitly =

@@ -54,7 +54,7 @@ impl Case {
     /// Whether a configuration has a row of its own; of what is not meant under implicit steps one says so.
     pub fn has_row(&self, configuration: &CaseConfiguration) -> bool {
         let said = !configuration.implicit
-            || matches!(self.implicitly, Implicitly::By(_))
+            || !matches!(self.implicitly, Implicitly::NotMeant(_))
             || configuration.elements == ElementKind::Hex8;
         (self.on)(configuration) && said
     }

@@ -5,6 +5,7 @@ use sinew::Error;
 use sinew::Simulation;
 use sinew::output::OutputError;
 use sinew::scene::SceneFile;
+use sinew::scene::schema::{Contact, ContactLaw};
 use sinew::systems::Registry;
 use std::path::Path;
 
@@ -46,9 +47,29 @@ impl<'a> Trial<'a> {
         if self.case.scene.contains("elements: ") {
             all.push(format!("bodies.body.mesh.elements={}", self.configuration.elements_name()));
         }
-        all.extend(self.implicit_sets());
         all.extend_from_slice(sets);
-        Ok(SceneFile::from_text(&self.case.file(), self.case.scene, Path::new("."), &all)?)
+        self.scene_in(Path::new("."), all)
+    }
+
+    /// The case's scene with values put in, and with what makes it one of implicit steps where it is to be.
+    fn scene_in(&self, folder: &Path, mut sets: Vec<String>) -> Result<SceneFile, Error> {
+        if self.is_implicit() {
+            sets.retain(|set| !set.starts_with("integration"));
+            sets.splice(0..0, self.implicit_sets());
+        }
+        let read = |sets: &[String]| SceneFile::from_text(&self.case.file(), self.case.scene, folder, sets);
+        let scene = read(&sets)?;
+        let Implicitly::BySprings(_, share) = self.case.implicitly else { return Ok(scene) };
+        for (number, contact) in scene.scene.contacts.iter().enumerate().filter(|_| self.is_implicit()) {
+            if contact.law() == ContactLaw::Kinematic {
+                sets.push(format!("contacts[{number}].law=Penalty(share: {share:?})"));
+            }
+            // a spring has one force
+            if let Contact::Between { sweeps: 2.., .. } | Contact::Itself { sweeps: 2.., .. } = contact {
+                sets.push(format!("contacts[{number}].sweeps=1"));
+            }
+        }
+        Ok(read(&sets)?)
     }
 
     /// Whether by implicit steps.
@@ -59,7 +80,9 @@ impl<'a> Trial<'a> {
     /// What makes the scene one of implicit steps, where it is to be.
     fn implicit_sets(&self) -> Vec<String> {
         match self.case.implicitly {
-            Implicitly::By(set) if self.is_implicit() => vec!["integration=()".into(), set.into()],
+            Implicitly::By(set) | Implicitly::BySprings(set, _) if self.is_implicit() => {
+                vec!["integration=()".into(), set.into()]
+            }
             _ => Vec::new(),
         }
     }
@@ -89,13 +112,7 @@ impl<'a> Trial<'a> {
         let folder = tempfile::tempdir().map_err(OutputError::system("create a folder in", &place))?;
         let path = folder.path().join(name);
         std::fs::write(&path, text).map_err(OutputError::system("write", &path))?;
-        let scene = SceneFile::from_text(
-            &self.case.file(),
-            self.case.scene,
-            folder.path(),
-            &[self.implicit_sets(), sets.to_vec()].concat(),
-        )?;
-        Simulation::new(&scene, &self.configuration.options)
+        Simulation::new(&self.scene_in(folder.path(), sets.to_vec())?, &self.configuration.options)
     }
 
     /// Whether all is to be tried that the case knows, finer meshes too: in full, and where that is quickest.
@@ -142,6 +159,14 @@ impl<'a> Trial<'a> {
     pub fn within(&mut self, what: impl Into<String>, figure: f64, low: f64, high: f64) {
         let used = (figure - 0.5 * (low + high)).abs() / (0.5 * (high - low));
         self.gate(what, figure, format!("from {low:.6e} to {high:.6e}"), used);
+    }
+
+    /// How deep something is inside (m): springs of implicit steps give way, and it is told.
+    pub fn depth(&mut self, what: impl Into<String>, figure: f64, limit: f64) {
+        match self.is_implicit() {
+            true => self.report(what, figure),
+            false => self.most(what, figure, limit),
+        }
     }
 
     /// A figure that is told, whatever it is.

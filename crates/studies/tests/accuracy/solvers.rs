@@ -1,6 +1,7 @@
 //! Ways to step in time beside each other.
 
 use crate::made_up::{MadeUp, Nobody};
+use sinew::components::Precision;
 use sinew::scene::schema::ImplicitScheme;
 use sinew::{Options, SceneFile};
 use sinew_studies::accuracy::field::FieldReference;
@@ -173,4 +174,44 @@ fn an_implicit_run_is_predicted_from_a_few_steps() {
     let solution = engine.solve(&configuration).unwrap();
     assert_eq!((predicted.steps, solution.steps), (100, 100));
     assert!(predicted.seconds > 0.0 && predicted.seconds.is_finite(), "{predicted:?}");
+}
+
+/// A bar that sags, and a block squeezed to four tenths: how many passes over all forces each search for rest takes,
+/// counted by itself, and the one that a study goes by.
+#[test]
+fn rest_is_found_by_the_search_that_takes_fewer_passes() {
+    let bar = "(duration: 1, analysis: Static(METHOD tolerance: 1e-8),
+        bodies: {\"b\": (mesh: Box(size: (0.1, 0.03, 0.03), cells: (8, 2, 2), elements: Hex8MeanDilatation), material: \"m\")},
+        materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e4, poisson: 0.45))},
+        constraints: [Fixed(on: Set(\"x0\"))], loads: [Gravity(acceleration: (0, 0, -2))])";
+    let squeezed = "(duration: 1, analysis: Static(METHOD tolerance: 1e-3),
+        bodies: {\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3), elements: Tet4), material: \"m\")},
+        materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.49))},
+        constraints: [Fixed(on: Set(\"z0\")), Prescribed(on: Set(\"z1\"), displacement: (0, 0, -0.06))])";
+    let mut by = std::collections::BTreeSet::new();
+    for (scene, precision) in [(bar, Precision::F64), (squeezed, Precision::F32)] {
+        let options = Options { precision, threads: 1, ..Options::default() };
+        let file =
+            |method: &str| SceneFile::from_text("block", &scene.replace("METHOD", method), "".as_ref(), &[]).unwrap();
+        let passes = ["", "method: Newton,"].map(|method| {
+            let mut simulation = sinew::Simulation::new(&file(method), &options).unwrap();
+            simulation.finish().unwrap();
+            simulation.step_count() + simulation.implicit_steps().map_or(0, |took| took.passes)
+        });
+        println!("relaxation {}, Newton {}", passes[0], passes[1]);
+        let expected = if passes[1] < passes[0] { "Newton" } else { "relaxation" };
+        for method in ["", "method: Newton,"] {
+            let file = file(method);
+            let mut engine = Engine::new(&file, options.clone(), false, false, || false).up_to(1.0);
+            let choices = engine.choices().unwrap();
+            assert_eq!(choices.base.method.to_string(), expected, "{:?}", choices.notes);
+            // the other one is a row
+            assert_eq!(choices.methods.len(), 1);
+            assert_ne!(choices.methods[0].to_string(), expected);
+            let note = choices.notes.iter().find(|note| note.starts_with("rest by"));
+            assert!(note.is_some_and(|note| note.contains(&format!("rest by {expected}"))), "{:?}", choices.notes);
+        }
+        by.insert(expected);
+    }
+    assert_eq!(by.len(), 2, "neither is the cheaper one always");
 }

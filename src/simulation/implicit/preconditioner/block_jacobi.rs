@@ -5,9 +5,10 @@ use super::{Operator, Preconditioner};
 use crate::components::*;
 use bevy_ecs::prelude::*;
 use glam::{DMat3, DVec3};
+use std::collections::BTreeMap;
 
 /// B = the inverses of the diagonal blocks of D + c K, K that of bodies at rest: found once, and again when some
-/// elements have gone.
+/// elements have gone; and of the springs that touch.
 #[derive(Default)]
 pub(in crate::simulation) struct BlockJacobi {
     /// Diagonal blocks of K (N/m), a node each.
@@ -19,6 +20,8 @@ pub(in crate::simulation) struct BlockJacobi {
     pub inertia: Vec<f64>,
     pub free: Vec<bool>,
     share: f64,
+    /// What springs add to the blocks of nodes that they act on (N/m).
+    springs: BTreeMap<usize, DMat3>,
 }
 
 /// What is another than it was.
@@ -80,17 +83,29 @@ impl BlockJacobi {
             self.inertia.extend_from_slice(operator.inertia);
             self.free.clear();
             self.free.extend_from_slice(operator.free);
+            self.springs.clear();
             self.inverses = (0..self.stiffness.len()).map(|node| self.inverse_of(node, DMat3::IDENTITY)).collect();
         }
+        let before = std::mem::replace(&mut self.springs, blocks_of_springs(operator));
+        for node in before.keys().chain(self.springs.keys()).copied().collect::<Vec<usize>>() {
+            self.inverses[node] = self.inverse_of(node, DMat3::IDENTITY);
+        }
         changed
+    }
+
+    /// Whether springs act on any node.
+    pub fn is_touched(&self) -> bool {
+        !self.springs.is_empty()
     }
 
     /// The inverse of the block of a node that is turned.
     pub fn turned(&self, node: usize, rotation: DMat3) -> DMat3 {
         match self.free[3 * node..3 * node + 3] {
-            [true, true, true] => rotation * self.inverses[node] * rotation.transpose(),
+            [true, true, true] if !self.springs.contains_key(&node) => {
+                rotation * self.inverses[node] * rotation.transpose()
+            }
             [false, false, false] => DMat3::ZERO,
-            // what holds it does not turn with it
+            // what holds it, and what touches it, does not turn with it
             _ => self.inverse_of(node, rotation),
         }
     }
@@ -103,7 +118,8 @@ impl BlockJacobi {
     fn inverse_of(&self, node: usize, rotation: DMat3) -> DMat3 {
         let axes = 3 * node..3 * node + 3;
         let stiffness = rotation * self.stiffness[node] * rotation.transpose();
-        inverse(stiffness * self.share, &self.inertia[axes.clone()], &self.free[axes])
+        let springs = self.springs.get(&node).copied().unwrap_or(DMat3::ZERO);
+        inverse(stiffness * self.share + springs, &self.inertia[axes.clone()], &self.free[axes])
     }
 }
 
@@ -130,6 +146,17 @@ fn inverse(stiffness: DMat3, inertia: &[f64], free: &[bool]) -> DMat3 {
     inverse = (inverse + inverse.transpose()) * 0.5;
     (0..3).filter(|&i| !free[i]).for_each(|i| inverse.col_mut(i)[i] = 0.0);
     inverse
+}
+
+/// What springs add to the diagonal blocks of nodes (N/m).
+fn blocks_of_springs(operator: &Operator<'_>) -> BTreeMap<usize, DMat3> {
+    let mut blocks = BTreeMap::new();
+    for spring in operator.springs {
+        for &(first, weight) in spring.parts {
+            *blocks.entry(first / 3).or_insert(DMat3::ZERO) += spring.slope * (weight * weight);
+        }
+    }
+    blocks
 }
 
 /// Of each node of a body the diagonal block of its stiffness at rest.

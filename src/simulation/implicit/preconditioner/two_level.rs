@@ -5,6 +5,7 @@ mod aggregates;
 mod cholesky;
 mod coarse;
 mod rotation;
+mod touched;
 
 use super::block_jacobi::{BlockJacobi, Changed, apply_blocks};
 use super::columns::{each_column, pieces};
@@ -17,7 +18,8 @@ pub(in super::super) use coarse::Coarse;
 use glam::{DMat3, DVec3};
 
 /// B r = Q (D⁻¹ + P A⁻¹ Pᵀ) Qᵀ r, D the diagonal blocks, P the rigid motions of aggregates of some 30 nodes, A = Pᵀ
-/// (D + c K) P their dense matrix, a piece of a body each, Q the rotations of the aggregates.
+/// (D + c K) P their dense matrix, a piece of a body each, Q the rotations of the aggregates. Springs that touch are in
+/// D, and in A those that act on one piece alone.
 ///
 /// Of a piece that nothing holds along an axis, what it does as a whole is solved apart from that: B t = t tᵀ r / tᵀ D
 /// t along its translation t, and the rest of B without a mean motion. So it keeps its linear momentum however early a
@@ -54,6 +56,7 @@ impl Preconditioner for TwoLevel {
     }
 
     fn follow(&mut self, operator: &Operator<'_>) {
+        let touches = self.fine.is_touched() || !operator.springs.is_empty();
         let changed = self.fine.update(operator);
         if changed == Changed::Bodies {
             self.pieces = find_pieces(operator);
@@ -62,7 +65,10 @@ impl Preconditioner for TwoLevel {
             self.made += 1;
             self.pieces.iter_mut().for_each(|piece| piece.coarse.factorize(&piece.nodes, operator));
         }
-        self.turn(operator, changed != Changed::Nothing);
+        self.turn(operator, changed != Changed::Nothing || touches);
+        if touches {
+            self.pieces.iter_mut().for_each(|piece| piece.coarse.touch(operator));
+        }
         self.residual.resize(operator.free.len(), 0.0);
     }
 

@@ -23,7 +23,7 @@ const IMPLICIT_STEPS: u64 = 4;
 
 /// By which power of the cells along an edge an implicit step takes more passes over all forces: those of two levels
 /// grow from 21 to 30 where a mesh has 2.1 times the cells.
-const MORE_PASSES: f64 = 0.5;
+pub(super) const MORE_PASSES: f64 = 0.5;
 
 /// Steps of a search for equilibrium that are timed at once: it checks itself that often.
 const STEPS_BETWEEN_CHECKS: u64 = 40;
@@ -182,10 +182,12 @@ impl Engine<'_> {
     /// what the scene's own kind takes with the same number type.
     fn steps_of_a_search(&mut self, kind: &Configuration) -> Result<f64, Refusal> {
         let own = self.base(self.kinds.as_deref().unwrap_or_default());
-        let digits = Configuration { digits: kind.digits, place: kind.place, ..kind_of(&own) };
-        let double = |c: &Configuration| c.digits == Digits::Double;
+        let digits = Configuration { digits: kind.digits, place: kind.place, method: kind.method, ..kind_of(&own) };
+        let alike = |c: &Configuration| {
+            c.method == kind.method && (c.digits == Digits::Double) == (kind.digits == Digits::Double)
+        };
         let known = self.known.iter().find(|(known, _)| *known == digits);
-        let known = known.or_else(|| self.known.iter().find(|(known, _)| double(known) == double(kind)));
+        let known = known.or_else(|| self.known.iter().find(|(known, _)| alike(known)));
         if let Some((_, known)) = known {
             return Ok(known.steps / known.mesh.value());
         }

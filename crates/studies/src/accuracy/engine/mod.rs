@@ -6,6 +6,7 @@ mod effects;
 mod ladder;
 mod march;
 mod meshes;
+mod rest;
 mod sample;
 mod steps;
 mod variant;
@@ -15,6 +16,7 @@ use super::method::Method;
 use super::solver::{Choices, Cost, Refusal, Solution, Solver};
 use calibration::Calibration;
 use march::{Sampling, refusal};
+use rest::Rest;
 use sinew::assembly::mesh_of;
 use sinew::backend::gpu::Choice;
 use sinew::components::Precision;
@@ -43,6 +45,8 @@ pub struct Engine<'a> {
     end: Option<Instant>,
     /// Kinds of elements that all bodies can have, once they are known.
     kinds: Option<Vec<ElementKind>>,
+    /// Which search for equilibrium is gone by, once it is known.
+    rest: Option<Rest>,
 }
 
 impl<'a> Engine<'a> {
@@ -61,6 +65,7 @@ impl<'a> Engine<'a> {
             meshes: None,
             end: None,
             kinds: None,
+            rest: None,
         }
     }
 
@@ -76,13 +81,18 @@ impl<'a> Engine<'a> {
     /// That the scene as it is written cannot be run.
     pub fn sample_count(&mut self) -> Result<u64, Refusal> {
         let kinds = self.elements()?;
+        let written = self.base(&kinds);
+        self.kinds = Some(kinds.clone());
+        if self.rest.is_none() {
+            self.rest = Some(self.choose_rest(&written)?);
+        }
         let base = self.base(&kinds);
-        self.kinds = Some(kinds);
         self.calibrate(&base)?;
         Ok(self.sampling.as_ref().filter(|_| !self.file.scene.is_static()).map_or(0, |sampling| sampling.count))
     }
 
-    /// The scene as it is written; `elements` are the kinds that its bodies can have.
+    /// The scene as it is written, at rest by the search that takes fewer passes; `elements` are the kinds that its
+    /// bodies can have.
     fn base(&self, elements: &[ElementKind]) -> Configuration {
         let place = if self.options.backend == BackendChoice::Gpu { Processor::Gpu } else { Processor::Cpu };
         let scene = &self.file.scene;
@@ -93,7 +103,11 @@ impl<'a> Engine<'a> {
         }
         kinds.dedup();
         let element = if let [kind] = kinds[..] { Some(kind).filter(|kind| elements.contains(kind)) } else { None };
-        written(scene, element, self.options.precision == Precision::F64, place)
+        let mut base = written(scene, element, self.options.precision == Precision::F64, place);
+        if let Some(by) = self.rest.as_ref().and_then(|rest| rest.by) {
+            base.method = Method::Rest(by);
+        }
+        base
     }
 
     fn options(&self, configuration: &Configuration) -> Options {
@@ -146,7 +160,7 @@ impl<'a> Engine<'a> {
 
     fn notes(&self) -> Vec<String> {
         let scene = &self.file.scene;
-        let mut notes = Vec::new();
+        let mut notes: Vec<String> = self.rest.iter().filter_map(|rest| rest.note.clone()).collect();
         let each = |load: &Load| matches!(load, Load::NodalForce { share: Share::Each, .. });
         if let Some(number) = scene.loads.iter().position(each) {
             notes.push(format!(

@@ -10,7 +10,7 @@ impl Engine<'_> {
     /// All but the scene's own. Where implicit steps are refused one of each formula says so.
     pub(super) fn methods(&mut self, base: &Configuration) -> Result<Vec<Method>, Refusal> {
         if self.file.scene.is_static() {
-            return Ok(Vec::new());
+            return Ok(self.rest.iter().filter_map(|rest| rest.beside).map(Method::Rest).collect());
         }
         let explicit = Configuration { method: Method::Explicit, place: Processor::Cpu, ..base.clone() };
         let stable = match self.step(&explicit, &self.options(&explicit)) {

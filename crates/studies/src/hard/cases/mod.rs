@@ -16,15 +16,15 @@ mod shocks;
 mod step;
 mod viscosity;
 
-use super::implicit::{CONTACT, FINE, FRAMES, IMPACT, KEEPING, LOOSE, NEWTON, ON_HOST, SHORT, STABLE_STEP, TURNING};
+use super::implicit::{
+    FINE, FRAMES, IMPACT, KEEPING, KINEMATIC, LONG, LOOSE, MEETING, NEWTON, ON_HOST, PRESSED, SHORT, SLIDING,
+    STABLE_STEP, STIFFEST, SUCTION, TOO_FAST, TOUCHING, TURNING,
+};
 use super::{Case, CaseConfiguration};
 use contact::{free, friction, holding, indentation, patch, rest, shapes, springs, start, taking, waves};
 
-/// A case: its number and name make the path of its scene. One of contact needs not say what it is by implicit steps.
+/// A case: its number and name make the path of its scene.
 macro_rules! case {
-    ($id:literal $name:literal $title:literal, $passes:literal, $on:expr, $run:path) => {
-        case!($id $name $title, $passes, $on, $run, CONTACT)
-    };
     ($id:literal $name:literal $title:literal, $passes:literal, $on:expr, $run:path, $implicitly:expr) => {
         Case {
             id: $id,
@@ -134,52 +134,52 @@ pub const CASES: &[Case] = &[
     case!("h35" "buckling" "slender column buckling",
         "deflection of a finer mesh within 3 %", every, bending::buckling, SHORT),
     case!("h36" "indented_block" "ball pressed into a block (Hertz)",
-        "force within 6 % of the linear one with four faces on the radius of contact, 15 % with two", hexahedra, indentation::block),
+        "force within 6 % of the linear one with four faces on the radius of contact, 15 % with two", hexahedra, indentation::block, PRESSED),
     case!("h37" "indented_layer" "ball pressed into a layer as thick as its radius",
-        "force within 8 % of the linear one", hexahedra, indentation::layer),
+        "force within 8 % of the linear one", hexahedra, indentation::layer, PRESSED),
     case!("h38" "pressed_ball" "elastic ball between two plates",
-        "force within 8 % of the linear one", hexahedra, indentation::ball),
+        "force within 8 % of the linear one", hexahedra, indentation::ball, PRESSED),
     case!("h39" "two_bars" "bar that meets an equal one end on",
-        "2L/c within -1 and +2 %, ρcAv/2 within 1.5 %, velocities exchanged within 2 %", every, waves::two_bars),
+        "2L/c within -1 and +2 %, ρcAv/2 within 1.5 %, velocities exchanged within 2 %", every, waves::two_bars, MEETING),
     case!("h40" "bar_on_plane" "bar that meets a plane end on",
-        "2L/c within -1 and +3 %, ρcAv within 1.5 %, rebound within 3 %", every, waves::bar_on_plane),
+        "2L/c within -1 and +3 %, ρcAv within 1.5 %, rebound within 3 %", every, waves::bar_on_plane, MEETING),
     case!("h41" "slope" "block on a slope, below and beyond the angle of friction",
-        "sticks to 1e-8 m; slides as a rigid block within 1 % and its lean", every, friction::slope),
-    case!("h42" "slide_to_rest" "block that slides to rest", "v²/(2μg) within 3 %", every, friction::slide_to_rest),
-    case!("h43" "direction_of_friction" "block drawn in any direction", "against the slip within .5°", every, friction::direction),
+        "sticks to 1e-8 m; slides as a rigid block within 1 % and its lean", every, friction::slope, SLIDING),
+    case!("h42" "slide_to_rest" "block that slides to rest", "v²/(2μg) within 3 %", every, friction::slide_to_rest, SLIDING),
+    case!("h43" "direction_of_friction" "block drawn in any direction", "against the slip within .5°", every, friction::direction, SLIDING),
     case!("h44" "drop" "cube dropped on a table",
-        "arrives within two steps, loses half to all of its half layer, impulse is momentum", every, waves::drop),
-    case!("h45" "rest" "cube at rest on a table", "weight within 1e-4, 1e-7 m/s, no node inside", every, rest::rests),
-    case!("h46" "stack" "cube on a cube on a table", "m g and 2 m g within 1e-3, creeps by less than 1e-7 m", every, rest::stack),
-    case!("h47" "contact_patch" "pressure across cells that do not match", "stress within 6 %", every, patch::contact_patch),
-    case!("h48" "punch" "plate pressed on a block", "uniform stress to 1e-6 (f64)", every, rest::punch),
-    case!("h49" "ironing" "ball drawn over ten faces", "nodes held by μ within 1 %, ripple at most 20 %", one_point, friction::ironing),
+        "arrives within two steps, loses half to all of its half layer, impulse is momentum", every, waves::drop, KINEMATIC),
+    case!("h45" "rest" "cube at rest on a table", "weight within 1e-4, 1e-7 m/s, no node inside", every, rest::rests, TOUCHING),
+    case!("h46" "stack" "cube on a cube on a table", "m g and 2 m g within 1e-3, creeps by less than 1e-7 m", every, rest::stack, TOUCHING),
+    case!("h47" "contact_patch" "pressure across cells that do not match", "stress within 6 %", every, patch::contact_patch, TOUCHING),
+    case!("h48" "punch" "plate pressed on a block", "uniform stress to 1e-6 (f64)", every, rest::punch, PRESSED),
+    case!("h49" "ironing" "ball drawn over ten faces", "nodes held by μ within 1 %, ripple at most 20 %", one_point, friction::ironing, LONG),
     case!("h50" "oblique" "oblique collision of two free cubes",
-        "momentum to 1e-10 (f64), its moment to 1e-6, no energy made", every, free::oblique),
+        "momentum to 1e-10 (f64), its moment to 1e-6, no energy made", every, free::oblique, MEETING),
     case!("h51" "restitution" "nodes that hit a plate, by the kinematic law and by springs",
-        "stopped in two steps; given back within .5 %, damped within .025 of the closed form", hexahedra, springs::restitution_of_nodes),
+        "stopped in two steps; given back within .5 %, damped within .025 of the closed form", hexahedra, springs::restitution_of_nodes, KINEMATIC),
     case!("h52" "penalty" "springs as stiff as the step allows, and stiffer",
-        "stands for 1e5 steps (everyday: 5000) with its weight within 1 %; the stiffer one is refused", every, springs::stiffest),
+        "stands for 1e5 steps (everyday: 5000) with its weight within 1 %; the stiffer one is refused", every, springs::stiffest, STIFFEST),
     case!("h54" "tunnelling" "needle of up to five radii a step against one layer",
-        "stopped, warned of or refused: never through in silence", every, start::tunnelling),
+        "stopped, warned of or refused: never through in silence", every, start::tunnelling, TOO_FAST),
     case!("h55" "overlap" "overlaps of .05, .3, .6 of an edge; a body inside another",
-        "small ones settle with no more energy than a wave brings, deep ones are refused", every, start::overlap),
+        "small ones settle with no more energy than a wave brings, deep ones are refused", every, start::overlap, SLIDING),
     case!("h56" "bad_surface" "tool mesh with a face without area, a sliver, a face twice, a hole, an edge of three faces",
-        "presses as a whole one, or is refused by name", every, start::bad_surface),
+        "presses as a whole one, or is refused by name", every, start::bad_surface, SLIDING),
     case!("h57" "sharp_edges" "edge across an edge, corner on an edge",
-        "weight within 1e-3, a tenth of an edge deep at most", every, shapes::edges),
-    case!("h58" "wound_columns" "two columns wound round each other", "none is in the other; volume within 3 %", every, shapes::wound),
-    case!("h59" "pile" "pile of 12 cubes (in full 1000)", "weight within 1 %, energy falls, the same bits", every, shapes::pile),
+        "weight within 1e-3, a tenth of an edge deep at most", every, shapes::edges, SLIDING),
+    case!("h58" "wound_columns" "two columns wound round each other", "none is in the other; volume within 3 %", every, shapes::wound, LONG),
+    case!("h59" "pile" "pile of 12 cubes (in full 1000)", "weight within 1 %, energy falls, the same bits", every, shapes::pile, LONG),
     case!("h61" "grasp" "cube that is grasped, lifted, carried and let go",
-        "weight within 1e-4; closing makes no energy, opening no momentum", every, holding::grasp),
+        "weight within 1e-4; closing makes no energy, opening no momentum", every, holding::grasp, SLIDING),
     case!("h62" "suture" "thread and glue that are drawn until they tear",
-        "bear their strength within 2 %; energy booked within 2 %", every, holding::suture),
+        "bear their strength within 2 %; energy booked within 2 %", every, holding::suture, SLIDING),
     case!("h63" "suction" "plate that hangs on a tube that sucks",
-        "Δp π r² within 3 %; comes off beyond that", every, taking::suction),
+        "Δp π r² within 3 %; comes off beyond that", every, taking::suction, SUCTION),
     case!("h64" "removal_by_tool" "tool that takes a volume a second from three meshes",
-        "the integral of its rate to one element; edges even", every, taking::removal),
-    case!("h68" "three_forces" "force on a tool by three ways", "equal to 5e-3 in motion, 1e-3 at rest", every, rest::three_forces),
-    case!("h69" "contact_far_away" "contact 1e4 m from the origin", "forces within 1e-3", every, rest::far_away),
+        "the integral of its rate to one element; edges even", every, taking::removal, SLIDING),
+    case!("h68" "three_forces" "force on a tool by three ways", "equal to 5e-3 in motion, 1e-3 at rest", every, rest::three_forces, SLIDING),
+    case!("h69" "contact_far_away" "contact 1e4 m from the origin", "forces within 1e-3", every, rest::far_away, SLIDING),
     case!("h70" "bouncing" "ball that bounces in a box for 20 000 steps (in full a million)",
-        "energy and what was lost within 1e-3 (f64), 1e-2 (f32)", every, free::bouncing),
+        "energy and what was lost within 1e-3 (f64), 1e-2 (f32)", every, free::bouncing, LONG),
 ];

@@ -1,11 +1,13 @@
 //! The coarse level of a piece of a body: rigid motions of aggregates of its nodes, and what resists them.
 
-use super::super::Operator;
 use super::super::columns::Column;
+use super::super::{Operator, SpringSlope};
 use super::aggregates::{Aggregates, RIGID, motions};
 use super::cholesky::Cholesky;
 use super::rotation::{angle, rotation};
+use super::touched::Touched;
 use glam::{DMat3, DVec3};
+use std::collections::BTreeSet;
 
 /// Nodes of an aggregate at most, as long as a piece has no more aggregates than that: the matrix is dense.
 const NODES_AN_AGGREGATE: usize = 30;
@@ -23,6 +25,8 @@ pub(in crate::simulation::implicit) struct Coarse {
     /// Pᵀ K P: rows up to the diagonal, one after the other.
     stiffness: Vec<f64>,
     factor: Cholesky,
+    /// What springs add to the matrix of the factor.
+    touched: Touched,
     /// How each aggregate has turned, and the arms of nodes as they are then.
     rotations: Vec<DMat3>,
     arms: Vec<DVec3>,
@@ -47,6 +51,7 @@ impl Coarse {
         let mut new = Self {
             stiffness: vec![0.0; size * (size + 1) / 2],
             factor: Cholesky::of(Vec::new(), 0),
+            touched: Touched::default(),
             rotations: vec![DMat3::IDENTITY; aggregates.count()],
             arms: aggregates.arm.clone(),
             coarse: vec![0.0; size],
@@ -107,6 +112,42 @@ impl Coarse {
             }
         }
         self.factor = Cholesky::of(matrix, self.coarse.len());
+        self.touched.forget();
+    }
+
+    /// Takes the springs that act on nodes of this piece alone, with aggregates as they have turned: Pᵀ of them P.
+    pub fn touch(&mut self, operator: &Operator<'_>) {
+        let own = |first: usize| self.nodes.binary_search(&(first / 3)).ok();
+        let is_own = |spring: &&SpringSlope<'_>| spring.parts.iter().all(|&(first, _)| own(first).is_some());
+        let springs: Vec<&SpringSlope<'_>> = operator.springs.iter().filter(is_own).collect();
+        let parts = springs.iter().flat_map(|spring| spring.parts);
+        let aggregates: BTreeSet<usize> =
+            parts.filter_map(|&(first, _)| Some(self.aggregates.of_node[own(first)?])).collect();
+        let aggregates: Vec<usize> = aggregates.into_iter().collect();
+        let count = RIGID * aggregates.len();
+        let mut stiffness = vec![0.0; count * count];
+        for spring in springs {
+            // of each unknown the point's motion against what it touches
+            let mut ways = vec![(0, DVec3::ZERO); 0];
+            for &(first, weight) in spring.parts {
+                let Some(own) = own(first) else { continue };
+                let aggregate = self.aggregates.of_node[own];
+                let Ok(place) = aggregates.binary_search(&aggregate) else { continue };
+                for axis in (0..3).filter(|axis| operator.free[first + axis]) {
+                    // along this axis of space, of motions in the frame of the aggregate
+                    let back = self.rotations[aggregate].transpose().col(axis) * weight;
+                    let turn = self.aggregates.arm[own].cross(back);
+                    for (i, way) in back.to_array().into_iter().chain(turn.to_array()).enumerate() {
+                        ways.push((RIGID * place + i, DVec3::AXES[axis] * way));
+                    }
+                }
+            }
+            for &(i, way) in &ways {
+                let force = spring.slope * way;
+                ways.iter().for_each(|&(j, other)| stiffness[count * i + j] += force.dot(other));
+            }
+        }
+        self.touched.take(&aggregates, stiffness, &self.factor, self.coarse.len());
     }
 
     /// Turns aggregates as their nodes have turned, at displacements (m). Whether any has.
@@ -165,7 +206,7 @@ impl Coarse {
     pub fn bytes(&self) -> usize {
         let of_nodes = size_of_val(&self.nodes[..]) + size_of_val(&self.rest[..]) + size_of_val(&self.arms[..]);
         let turned = size_of_val(&self.rotations[..]) + size_of_val(&self.coarse[..]);
-        of_nodes + turned + self.aggregates.bytes()
+        of_nodes + turned + self.aggregates.bytes() + self.touched.bytes()
     }
 
     /// The nodes with how they have turned.
@@ -184,6 +225,7 @@ impl Coarse {
         }
         turn_all(&mut self.coarse, &self.rotations, DMat3::transpose);
         self.factor.solve(&mut self.coarse);
+        self.touched.correct(&mut self.coarse);
         turn_all(&mut self.coarse, &self.rotations, |rotation| *rotation);
         for ((&node, &aggregate), &arm) in self.nodes.iter().zip(&self.aggregates.of_node).zip(&self.arms) {
             let motion = &self.coarse[RIGID * aggregate..][..RIGID];

@@ -1,4 +1,5 @@
 #![allow(clippy::unwrap_used)]
+use super::super::SpringSlope;
 use super::*;
 use crate::backend::cpu::Cpu;
 use crate::simulation::implicit::axes::{Axes, Motion};
@@ -44,6 +45,7 @@ impl Made {
             free: &self.motion.free,
             inertia: &self.inertia,
             stiffness: 1.0,
+            springs: &[],
         }
     }
 
@@ -72,10 +74,15 @@ fn it_is_symmetric_and_positive_at_rest_and_turned_where_nodes_slide_and_where_t
     let mut simulation = two_blocks();
     let made = Made::of(&mut simulation);
     let sums = Sums::on(simulation.world.resource::<Cpu>());
-    for (angle, bend) in [(0.0, 0.0), (1.2, 3.0)] {
+    // on one node, between two of a body, and between bodies, far stiffer than elements
+    let slope = DMat3::from_diagonal(DVec3::new(1e4, 1e3, 3e4));
+    let ends =
+        [vec![(3, 1.0)], vec![(60, 1.0), (240, -0.3), (243, -0.7)], vec![(90, 1.0), (made.axes.len() - 3, -1.0)]];
+    let springs: Vec<SpringSlope<'_>> = ends.iter().map(|parts| SpringSlope { parts, slope }).collect();
+    for (angle, bend, springs) in [(0.0, 0.0, &[][..]), (1.2, 3.0, &[]), (0.0, 0.0, &springs), (1.2, 3.0, &springs)] {
         turn(&mut simulation, &made, angle, bend);
         let mut two_level = TwoLevel::default();
-        two_level.follow(&made.operator(&simulation));
+        two_level.follow(&Operator { springs, ..made.operator(&simulation) });
         assert_eq!(two_level.turned, angle > 0.0);
         let (p, q) = (made.vector(0.37), made.vector(0.91));
         let [mut of_p, mut of_q] = [vec![0.0; p.len()], vec![0.0; p.len()]];
@@ -91,7 +98,37 @@ fn it_is_symmetric_and_positive_at_rest_and_turned_where_nodes_slide_and_where_t
             assert!(sums.dot(&r, &z) > 0.0, "{angle}, {seed}");
             assert!((0..r.len()).all(|axis| made.motion.free[axis] || z[axis] == 0.0));
         }
+        // gone again, it is as if there had been none
+        let mut without = TwoLevel::default();
+        without.follow(&made.operator(&simulation));
+        two_level.follow(&made.operator(&simulation));
+        let mut again = vec![0.0; p.len()];
+        two_level.apply(&p, &mut of_p);
+        without.apply(&p, &mut again);
+        assert_eq!(of_p, again);
     }
+}
+
+/// What a spring on one node of a body answers with: as much as the rest of the body lets it.
+#[test]
+fn stiff_springs_are_known() {
+    let mut simulation = two_blocks();
+    let made = Made::of(&mut simulation);
+    let slope = DMat3::from_diagonal(DVec3::new(0.0, 1e6, 0.0));
+    let parts = [(60, 1.0)];
+    let springs = [SpringSlope { parts: &parts, slope }];
+    let mut r = vec![0.0; made.axes.len()];
+    r[61] = 1.0;
+    let answer = |springs: &[SpringSlope<'_>]| {
+        let mut two_level = TwoLevel::default();
+        two_level.follow(&Operator { springs, ..made.operator(&simulation) });
+        let mut z = vec![0.0; r.len()];
+        two_level.apply(&r, &mut z);
+        z[61]
+    };
+    let [without, with] = [answer(&[]), answer(&springs)];
+    // a share of the block, and one of the aggregate: each within twice what the spring alone gives way by
+    assert!(without > 1e-4 && with < 4.0 / 1e6 && with > 0.0, "{without} m, {with} m");
 }
 
 /// Pᵀ K P of elements' columns against products of the tangent with the motions.

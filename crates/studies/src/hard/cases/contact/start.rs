@@ -79,7 +79,7 @@ pub fn overlap(trial: &mut Trial<'_>) -> Result<(), Error> {
                 false => simulation.contact("other")?.penetration.max(simulation.contact("body")?.penetration),
             };
             let allowed = if table { trial.bound(1e-12, 1e-8) } else { 0.1 * depth };
-            trial.most(what("inside at the end (m)"), left, allowed);
+            trial.depth(what("inside at the end (m)"), left, allowed);
         }
     }
     let deep = 0.6 * edge;

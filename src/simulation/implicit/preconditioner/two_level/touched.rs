@@ -1,0 +1,104 @@
+//! What springs add to a coarse level, without making its factor anew.
+
+use super::aggregates::RIGID;
+use super::cholesky::Cholesky;
+use std::collections::BTreeMap;
+
+/// (A + U S Uᵀ)⁻¹ = A⁻¹ − A⁻¹U G UᵀA⁻¹ with G = S (I + Uᵀ A⁻¹ U S)⁻¹ (Woodbury 1950), U the unknowns of the aggregates
+/// that springs act on and S what these make of them.
+#[derive(Default)]
+pub struct Touched {
+    /// Of each aggregate that has been touched the columns of A⁻¹ of its unknowns.
+    known: BTreeMap<usize, Vec<Vec<f64>>>,
+    /// The unknowns that are touched now, ascending.
+    unknowns: Vec<usize>,
+    /// G, row by row (N/m).
+    correction: Vec<f64>,
+}
+
+impl Touched {
+    /// Forgets what was of another factor.
+    pub fn forget(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Its bytes.
+    pub fn bytes(&self) -> usize {
+        let columns: usize = self.known.values().flatten().map(|column| size_of_val(&column[..])).sum();
+        columns + size_of_val(&self.correction[..]) + size_of_val(&self.unknowns[..])
+    }
+
+    /// Takes what springs make of these aggregates, ascending: S, row by row (N/m).
+    pub fn take(&mut self, aggregates: &[usize], stiffness: Vec<f64>, factor: &Cholesky, size: usize) {
+        let unknowns = |aggregate: usize| RIGID * aggregate..RIGID * (aggregate + 1);
+        for &aggregate in aggregates {
+            let column = |unknown: usize| {
+                let mut column = vec![0.0; size];
+                column[unknown] = 1.0;
+                factor.solve(&mut column);
+                column
+            };
+            self.known.entry(aggregate).or_insert_with(|| unknowns(aggregate).map(column).collect());
+        }
+        self.unknowns = aggregates.iter().flat_map(|&aggregate| unknowns(aggregate)).collect();
+        self.correction = self.corrected(stiffness).unwrap_or_default();
+        if self.correction.is_empty() {
+            self.unknowns.clear();
+        }
+    }
+
+    /// The column of A⁻¹ of an unknown that is touched.
+    fn column(&self, unknown: usize) -> &[f64] {
+        self.known.get(&(unknown / RIGID)).map_or(&[], |columns| &columns[unknown % RIGID])
+    }
+
+    /// G by elimination with pivots of (I + S W) G = S, W = Uᵀ A⁻¹ U; `None` where it is singular.
+    fn corrected(&self, stiffness: Vec<f64>) -> Option<Vec<f64>> {
+        let count = self.unknowns.len();
+        let (mut right, mut left) = (stiffness, vec![0.0; count * count]);
+        for j in 0..count {
+            let column = self.column(self.unknowns[j]);
+            for i in 0..count {
+                let row = &right[count * i..count * (i + 1)];
+                let product: f64 = row.iter().zip(&self.unknowns).map(|(s, &unknown)| s * column[unknown]).sum();
+                left[count * i + j] = product + f64::from(u8::from(i == j));
+            }
+        }
+        for k in 0..count {
+            let pivot = (k..count).max_by(|&a, &b| left[count * a + k].abs().total_cmp(&left[count * b + k].abs()))?;
+            for j in 0..count {
+                left.swap(count * k + j, count * pivot + j);
+                right.swap(count * k + j, count * pivot + j);
+            }
+            let per_pivot = 1.0 / left[count * k + k];
+            if !per_pivot.is_finite() {
+                return None;
+            }
+            for i in (0..count).filter(|&i| i != k) {
+                let factor = left[count * i + k] * per_pivot;
+                if factor != 0.0 {
+                    (k..count).for_each(|j| left[count * i + j] -= factor * left[count * k + j]);
+                    (0..count).for_each(|j| right[count * i + j] -= factor * right[count * k + j]);
+                }
+            }
+            (0..count).for_each(|j| right[count * k + j] *= per_pivot);
+            (k..count).for_each(|j| left[count * k + j] *= per_pivot);
+        }
+        // symmetric to the last bit, as what conjugate gradients are preconditioned with must be
+        let mean = |i: usize, j: usize| 0.5 * (right[count * i + j] + right[count * j + i]);
+        Some((0..count * count).map(|at| mean(at / count, at % count)).collect())
+    }
+
+    /// Makes x = A⁻¹ b what it is with the springs.
+    pub fn correct(&self, x: &mut [f64]) {
+        let count = self.unknowns.len();
+        let at: Vec<f64> = self.unknowns.iter().map(|&unknown| x[unknown]).collect();
+        for (row, &unknown) in self.correction.chunks_exact(count.max(1)).zip(&self.unknowns) {
+            let less: f64 = row.iter().zip(&at).map(|(g, x)| g * x).sum();
+            x.iter_mut().zip(self.column(unknown)).for_each(|(x, column)| *x -= less * column);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
