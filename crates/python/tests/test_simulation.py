@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 import sinew
 
-from conftest import BLOCK
+from conftest import BLOCK, PULL
 
 
 def test_steps_and_times(simulation: sinew.Simulation) -> None:
