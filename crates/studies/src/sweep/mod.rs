@@ -11,9 +11,9 @@ pub use manifest::{Done, Ended, key};
 pub use rows::{Kept, Results};
 pub use table::{SweepFile, Value, Variants};
 
+use serde_json::Value as Json;
 use sinew::scene::{Allowed, Diagnostics};
 use sinew::{Ended as Why, Error, Options, SceneFile, Simulation};
-use serde_json::Value as Json;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -255,9 +255,7 @@ impl Sweep {
             let numbers = Json::from(numbers);
             if self.file.at.is_empty() {
                 row.kept.insert(name.clone(), numbers);
-            } else if let Json::Array(times) =
-                row.kept.entry(name.clone()).or_insert_with(|| Json::Array(Vec::new()))
-            {
+            } else if let Json::Array(times) = row.kept.entry(name.clone()).or_insert_with(|| Json::Array(Vec::new())) {
                 times.push(numbers);
             }
         }

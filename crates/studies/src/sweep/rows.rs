@@ -91,8 +91,8 @@ impl Results {
     /// Files that cannot be read or written.
     pub fn open(folder: &Path, part: Part, keys: Vec<String>) -> Result<Self, SweepError> {
         std::fs::create_dir_all(folder).map_err(|error| SweepError::Files(folder.into(), error))?;
-        let files = [("rows", "csv"), ("manifest", "jsonl")]
-            .map(|(stem, extension)| folder.join(part.file(stem, extension)));
+        let files =
+            [("rows", "csv"), ("manifest", "jsonl")].map(|(stem, extension)| folder.join(part.file(stem, extension)));
         let manifest = Manifest::open(&files[1])?;
         let keys: Vec<(usize, String)> = keys.into_iter().enumerate().filter(|(n, _)| part.has(*n)).collect();
         let rows = keys.iter().map(|(number, key)| manifest.find(*number, key)).collect();
