@@ -62,7 +62,8 @@ pub(super) fn square_frequency<'a>(
     square_frequency_of(world, entity, block, |number| number)
 }
 
-/// β of a block's damping (s), of each copy where it differs, else one; 0 where there is none, and in a static analysis.
+/// β of a block's damping (s), of each copy where it differs, else one; 0 where there is none, and in a static
+/// analysis.
 pub fn damping_times(world: &World, entity: Entity) -> Vec<f64> {
     let moves = world.get_resource::<Clock>().is_none_or(|clock| clock.relaxation.is_none());
     let time = |damping: Option<StiffnessDamping>| damping.filter(|_| moves).map_or(0.0, |damping| damping.0);

@@ -212,8 +212,8 @@ impl BlockKernels {
             .bind_uniform::<Block>("block", self.parameters)
     }
 
-    /// Adds the parameters of the elastic law, if it has any, or those in which each element has its own, with the terms
-    /// of what it remembers or without.
+    /// Adds the parameters of the elastic law, if it has any, or those in which each element has its own, with the
+    /// terms of what it remembers or without.
     fn with_parameters(&self, kernel: Kernel, remembers: bool) -> Kernel {
         match (self.law_numbers, self.elastic) {
             (Some(numbers), _) => kernel

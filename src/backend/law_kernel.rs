@@ -58,8 +58,8 @@ pub(super) fn private(fragment: &Fragment, name: &str) -> Fragment {
 }
 
 /// WGSL that gives an invocation the law of its element, where the parameters in
-/// [`LawParameters::numbers`](super::cpu::LawParameters::numbers) differ from copy to copy; terms of what it `remembers`
-/// are known only to kernels that carry that on.
+/// [`LawParameters::numbers`](super::cpu::LawParameters::numbers) differ from copy to copy; terms of what it
+/// `remembers` are known only to kernels that carry that on.
 pub(super) fn law_of_element(law: &BlockLaw<f32>, remembers: bool) -> String {
     let (rows, of_law) = law.copies.as_ref().map_or((0, 0), |copies| (copies.rows, copies.of_law));
     let families = &law.exponential;

@@ -25,9 +25,9 @@ const WRITTEN: [&str; 2] = [RestShape::NAME, ViscousMemory::NAME];
 impl Simulation {
     /// Changes parameters from the next step on, by their places in the scene and in the words of `--set`:
     /// `"materials.liver.neo_hookean=Young(young: 5e3, poisson: 0.45)"`, `"loads[0].acceleration=(0, 0, -3.7)"`. They
-    /// are those of elastic laws, `fibres` and `exponential_fibres` (not their directions), `per_copy` of bodies of
-    /// the same, and what loads are: all in the scene's units. All of it is read and checked as the scene was, and the stable step is
-    /// found anew where materials change, for some tens of steps' time.
+    /// are those of elastic laws, `fibres` and `exponential_fibres` (not their directions), `per_copy` of bodies of the
+    /// same, and what loads are: all in the scene's units. All of it is read and checked as the scene was, and the
+    /// stable step is found anew where materials change, for some tens of steps' time.
     ///
     /// Snapshots hold what was changed, and going back takes it back. Nodes stay where they are: a load that changes
     /// acts in full from the next step on, and what elements hold more or less afterwards counts as if they had begun

@@ -175,9 +175,7 @@ impl Effects {
             varied.push("\"tissue.exponential_fibres[0].k1\": Values([900, 500])");
             varied.push("\"tissue.exponential_fibres[1].k2\": Values([0.1, 0.4])");
         }
-        if self.varied.is_some() && self.prony > 0 {
-            varied.push("\"tissue.prony.terms[0].alpha\": Values([0.4, 0.2])");
-        }
+        varied.extend((self.varied.is_some() && self.prony > 0).then_some(laws::VARIED_TERM));
         let varied = varied.join(", ");
         let both = |text: &str| {
             ["tets", "hexes"].map(|body| text.replace("BODY", body).replace("PER_COPY", per_copy)).concat()

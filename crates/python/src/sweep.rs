@@ -1,5 +1,5 @@
-//! What sweeps of Python have in common with those of the command: which variants there are, what makes two rows the same,
-//! and the files of the results.
+//! What sweeps of Python have in common with those of the command: which variants there are, what makes two rows the
+//! same, and the files of the results.
 
 use crate::scene::Scene;
 use crate::simulation::options;

@@ -25,8 +25,8 @@ pub struct Done {
     pub time: f64,
     /// What it took on the wall (s).
     pub seconds: f64,
-    /// What was kept, by name: of a probe its numbers, or a list of them for each time, of which there are fewer where it
-    /// ended early. What is no number is null.
+    /// What was kept, by name: of a probe its numbers, or a list of them for each time, of which there are fewer where
+    /// it ended early. What is no number is null.
     pub kept: BTreeMap<String, serde_json::Value>,
 }
 
@@ -69,8 +69,8 @@ struct Line {
     done: Done,
 }
 
-/// What makes two rows the same, as a key: version, text of the scene, what is put in as `--set` has it, names of what is
-/// kept and when (s), and how it runs. What mesh files hold is not looked at.
+/// What makes two rows the same, as a key: version, text of the scene, what is put in as `--set` has it, names of what
+/// is kept and when (s), and how it runs. What mesh files hold is not looked at.
 pub fn key(scene: &str, sets: &[String], keep: &[String], at: &[f64], options: &Options) -> String {
     let Options { backend, precision, scheme, grabs, .. } = options;
     let how = format!("{} {backend:?} {precision:?} {scheme:?} {grabs}", env!("CARGO_PKG_VERSION"));
