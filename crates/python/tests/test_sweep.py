@@ -107,8 +107,9 @@ def test_the_command_and_python_go_on_with_each_other(tmp_path: Path) -> None:
     a_sweep = sinew.read_sweep(file)
 
     def by_the_command(out: Path) -> str:
-        words = [command, "sweep", file, "-o", out]
-        return subprocess.run(words, check=True, capture_output=True, text=True, cwd=tmp_path).stdout
+        words = [str(command), "sweep", str(file), "-o", str(out)]
+        told = subprocess.run(words, check=True, capture_output=True, text=True, cwd=tmp_path)
+        return str(told.stdout)
 
     def half(out: Path) -> None:
         lines = (out / "manifest.jsonl").read_text().splitlines()

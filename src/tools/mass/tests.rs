@@ -1,3 +1,5 @@
+#![allow(clippy::unwrap_used)]
+
 use super::*;
 use crate::tools::Solid;
 use std::f64::consts::PI;

@@ -218,28 +218,33 @@ impl Sweep {
     /// Takes a variant to its end, asking probes on the way. False: it was told to stop.
     fn simulate(&self, scene: &SceneFile, how: &How<'_>, row: &mut Done) -> Result<bool, Error> {
         let mut simulation = Simulation::new(scene, &how.options)?;
+        let done = self.to_the_end(&mut simulation, how, row);
+        // also where it broke down
+        row.time = simulation.time();
+        done
+    }
+
+    fn to_the_end(&self, simulation: &mut Simulation, how: &How<'_>, row: &mut Done) -> Result<bool, Error> {
         for &time in &self.file.at {
             loop {
                 if (how.stop)() {
                     return Ok(false);
                 }
                 let advanced = simulation.advance_for(PIECE, time)?;
-                row.time = simulation.time();
                 if advanced.why != Why::Budget {
                     break;
                 }
             }
-            self.ask(&mut simulation, row)?;
+            self.ask(simulation, row)?;
         }
         while self.file.at.is_empty() && !simulation.is_finished() {
             if (how.stop)() {
                 return Ok(false);
             }
             simulation.advance_towards_end(PSEUDO_STEPS)?;
-            row.time = simulation.time();
         }
         if self.file.at.is_empty() {
-            self.ask(&mut simulation, row)?;
+            self.ask(simulation, row)?;
         }
         Ok(true)
     }
