@@ -1,6 +1,6 @@
 //! Copies that differ in where fibres run, in density, damping and viscosity, and in the directions of loads and
-//! motions: each as the body would be by itself, to the rounding of sums in another order (1e-11 of the largest displacement in
-//! f64, 1e-4 in f32).
+//! motions: each as the body would be by itself, to the rounding of sums in another order (1e-11 of the largest
+//! displacement in f64, 1e-4 in f32).
 
 use crate::configurations::{Configuration, configurations, near};
 use glam::DVec3;
