@@ -58,7 +58,7 @@ impl NodeSystem for Gravity {
         let of_rows = nodes.mass.iter().zip(&self.factors[nodes.first..]).zip(external.as_chunks_mut::<3>().0);
         for ((mass, factors), external) in of_rows {
             for i in 0..3 {
-                external[i] += *mass * T::from_f64(factors[i] * acceleration[i]);
+                external[i] += *mass * (T::from_f64(factors[i]) * T::from_f64(acceleration[i]));
             }
         }
     }
