@@ -1,5 +1,5 @@
 // A force on chosen nodes that have mass; twin of systems/nodal_force.rs. factor_of is in
-// force_factor.wgsl, or generated where all nodes get the same.
+// load_factor.wgsl, or generated where all nodes get the same.
 struct NodalLoad {
     signal: u32, // slot of the force (N)
 }

@@ -1,5 +1,5 @@
 // Dead loads on the surface; twin of systems/traction.rs. bears is in alive.wgsl, or generated where no element ever
-// goes.
+// goes; factor_of is in load_factor.wgsl, or generated where all nodes get the same.
 struct TractionLoad {
     signal: u32, // slot of the force per area (Pa)
 }
@@ -15,5 +15,5 @@ fn traction(i: u32, node: u32) {
             area += areas[at];
         }
     }
-    add_load(node, step.signals[load.signal].xyz * area);
+    add_load(node, factor_of(i) * step.signals[load.signal].xyz * area);
 }

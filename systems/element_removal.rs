@@ -219,7 +219,9 @@ fn recompute_masses(
             return Err(missing("a column of a body"));
         };
         let rate = rate.map_or(0.0, |rate| rate.0);
-        add_nodal_masses(block, connectivity, shape, density.0, rate, &mut masses, &mut coefficients);
+        // densities of copies do not differ where elements are removed
+        let inertia = ElementInertia::of_all(density.0, rate);
+        add_nodal_masses(block, connectivity, shape, inertia, &mut masses, &mut coefficients);
     }
     (0..count).for_each(|node| mass.set(node, masses[node]));
     if let Some(damping) = damping {

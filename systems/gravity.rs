@@ -1,5 +1,6 @@
 //! `gravity`: mass times acceleration on every node. `shaders/gravity.wgsl` is its twin.
 
+use super::nodal_force::with_factors;
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::system::{Phase, System};
@@ -12,10 +13,13 @@ use crate::math::{LANES, SimdScalar};
 use crate::shader;
 use bevy_ecs::prelude::*;
 use pulp::{Simd, WithSimd};
+use std::sync::Arc;
 
 /// Gravity on the body: the acceleration (m/s²) is a signal.
 #[derive(Component, Clone, Debug)]
 pub struct Gravity {
+    /// What it is multiplied with at each row along each axis; empty: 1 at all.
+    factors: Arc<Vec<[f64; 3]>>,
     signal: usize,
 }
 
@@ -28,7 +32,7 @@ pub fn system() -> System {
         "`Gravity(...)` under `loads`",
         |world| super::registry::count::<Gravity>(world, "gravity load", "gravity loads"),
     )
-    .for_load("Gravity", |_, signal| Some(Gravity { signal }))
+    .for_load("Gravity", |on, signal| Some(Gravity { factors: on.all()?.clone(), signal }))
     .on_nodes(stages)
 }
 
@@ -46,8 +50,16 @@ impl NodeSystem for Gravity {
     }
 
     fn act<T: SimdScalar>(&self, acceleration: &[f64; 4], cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
-        if let Some(external) = nodes.external.as_deref_mut() {
+        let Some(external) = nodes.external.as_deref_mut() else { return };
+        if self.factors.is_empty() {
             cpu.dispatch_widest(Pull { mass: nodes.mass, acceleration: acceleration.map(T::from_f64), external });
+            return;
+        }
+        let of_rows = nodes.mass.iter().zip(&self.factors[nodes.first..]).zip(external.as_chunks_mut::<3>().0);
+        for ((mass, factors), external) in of_rows {
+            for i in 0..3 {
+                external[i] += *mass * (T::from_f64(factors[i]) * T::from_f64(acceleration[i]));
+            }
         }
     }
 }
@@ -85,17 +97,17 @@ uniform!(GravityLoad { signal });
 
 /// One stage for each load.
 fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
-    let loads: Vec<(usize, Entity)> =
-        world.query::<(&Gravity, &OfBody)>().iter(world).map(|(load, body)| (load.signal, body.0)).collect();
+    let loads: Vec<(Gravity, Entity)> =
+        world.query::<(&Gravity, &OfBody)>().iter(world).map(|(load, body)| (load.clone(), body.0)).collect();
     let mut stages = Vec::new();
-    for (signal, body) in loads {
+    for (Gravity { factors, signal }, body) in loads {
         let count = world.get::<Mass>(body).map_or(0, |mass| mass.len()) as u32;
         let load = GravityLoad { signal: signal as u32 };
         let stage = NodeStage::new("gravity", "gravity", body, count, shader!("gravity"))
             .bind_uniform::<GravityLoad>("load", buffers.uniform("gravity".into(), &load.bytes()))
             .column(Mass::NAME, buffers.column(body, Mass::NAME))
             .column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME));
-        stages.push(stage.with_step(world).loaded(true));
+        stages.push(with_factors(stage, &factors, buffers).with_step(world).loaded(true));
     }
     stages
 }

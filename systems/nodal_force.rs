@@ -59,9 +59,9 @@ impl NodeSystem for NodalForce {
         for place in places_within(rows, nodes.first, nodes.mass.len()) {
             let row = rows[place] as usize - nodes.first;
             if nodes.mass[row] > T::default() {
-                let factor = T::from_f64(factors.get(place).copied().unwrap_or(1.0));
+                let factors = factors.get(place).unwrap_or(&[1.0; 3]);
                 for i in 0..3 {
-                    external[3 * row + i] += factor * T::from_f64(force[i]);
+                    external[3 * row + i] += T::from_f64(factors[i]) * T::from_f64(force[i]);
                 }
             }
         }
@@ -87,15 +87,19 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
             .column(Mass::NAME, buffers.column(body, Mass::NAME))
             .column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME))
             .of_rows(force.on.rows.clone());
-        let stage = if force.on.factors.is_empty() {
-            let text = "fn factor_of(i: u32) -> f32 {\n    return 1.0;\n}\n";
-            stage.own(Fragment::new("generated: the same force on all nodes", text))
-        } else {
-            let factors: Vec<f32> = force.on.factors.iter().map(|&factor| factor as f32).collect();
-            let factors = buffers.constants("factors of nodal_force".into(), bytemuck::cast_slice(&factors));
-            stage.own(shader!("force_factor")).bind("factors", factors)
-        };
+        let stage = with_factors(stage, &force.on.factors, buffers);
         stages.push(stage.with_step(world).loaded(true));
     }
     stages
+}
+
+/// Adds what a load is multiplied with at each of its rows along each axis; empty: 1 at all.
+pub(super) fn with_factors(stage: NodeStage, factors: &[[f64; 3]], buffers: &mut dyn Buffers) -> NodeStage {
+    if factors.is_empty() {
+        let text = "fn factor_of(i: u32) -> vec3<f32> {\n    return vec3<f32>(1.0);\n}\n";
+        return stage.own(Fragment::new("generated: the same load on all nodes", text));
+    }
+    let factors: Vec<f32> = factors.iter().flatten().map(|&factor| factor as f32).collect();
+    let factors = buffers.constants("factors of a load".into(), bytemuck::cast_slice(&factors));
+    stage.own(shader!("load_factor")).bind("factors", factors)
 }

@@ -1,5 +1,6 @@
 //! `traction`: dead loads on the surface. `shaders/traction.wgsl` is its twin.
 
+use super::nodal_force::with_factors;
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
@@ -68,8 +69,9 @@ impl NodeSystem for Traction {
                 }
             }
             let at = 3 * (faces.rows[i] as usize - first);
-            for (force, traction) in external[at..at + 3].iter_mut().zip(traction) {
-                *force += traction * area;
+            let factors = faces.factors.get(i).unwrap_or(&[1.0; 3]);
+            for k in 0..3 {
+                external[at + k] += T::from_f64(factors[k]) * traction[k] * area;
             }
         }
     }
@@ -101,6 +103,7 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
                 .bind("behind", buffers.constants("elements of traction".into(), bytemuck::cast_slice(&behind)))
                 .column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME))
                 .of_rows(faces.rows);
+            let stage = with_factors(stage, &faces.factors, buffers);
             stages.push(FaceLoad::with_alive(alive, stage, buffers).with_step(world).loaded(true));
         }
     }

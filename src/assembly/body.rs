@@ -3,7 +3,7 @@
 use super::body_columns::block_corners;
 use super::fibres::Members;
 use super::locality::{element_order, node_rows};
-use super::material::{called_for, parameters_of_copies};
+use super::material::{OfCopies, called_for};
 use super::patches::{insert_forces, strided};
 use super::{Assembly, PlacedMesh, select};
 use crate::backend::cpu::{LawCopies, PerCopyLaw};
@@ -45,8 +45,8 @@ impl BodyParts {
         rows
     }
 
-    /// For each of some rows the number that its copy has.
-    pub fn of_rows(&self, rows: &[u32], of_copies: &[f64]) -> Vec<f64> {
+    /// For each of some rows the number, or the numbers, that its copy has.
+    pub fn of_rows<N: Copy>(&self, rows: &[u32], of_copies: &[N]) -> Vec<N> {
         self.copies_of(rows).into_iter().map(|copy| of_copies[copy]).collect()
     }
 
@@ -169,12 +169,22 @@ impl BlockBuilder<'_> {
         let of_all = law.map_or(0.0, |law| young(law.small_strain_moduli()));
         let hourglass = self.assembly.scene.scene.bodies[name].hourglass;
         let material_name = world.get::<Label>(self.material).map(|label| label.0.clone()).unwrap_or_default();
-        let members = Members { mesh: self.mesh, elements: self.elements, body: name, material: &material_name };
-        let material = &called_for(&self.assembly.scene.scene.materials[&material_name]);
+        let scene = &self.assembly.scene.scene;
+        let copies: Arc<[u32]> = self.copies().collect();
+        let of_copies = OfCopies::of(scene, scene, name, &material_name);
+        let members = Members {
+            mesh: self.mesh,
+            elements: self.elements,
+            body: name,
+            material: &material_name,
+            copies: &copies,
+            of_copies: of_copies.as_ref().and_then(OfCopies::directions),
+        };
+        let material = &called_for(&scene.materials[&material_name]);
         let (fibre_directions, varying) = members.directions(material, self.assembly.precision, diagnostics);
         let per_copy = match &law {
             Some(ElasticLaw::CorotationalFrame(law)) => self.framed(law, (name, &material_name), diagnostics),
-            _ => self.per_copy(name, &material_name),
+            _ => of_copies.as_ref().and_then(OfCopies::laws).map(|laws| LawCopies::new(laws, Arc::clone(&copies))),
         };
         let stiffness = |row: usize| {
             let of_copy = per_copy.as_ref().map(|copies| young(copies.of_row(row).elastic.small_strain_moduli()));
@@ -216,16 +226,19 @@ impl BlockBuilder<'_> {
         if let Some(copies) = per_copy {
             entity.insert(PerCopyLaw(Arc::new(copies)));
         }
+        if let Some(memories) = of_copies.as_ref().and_then(OfCopies::memories) {
+            entity.insert(memories);
+        }
+        if let Some(inertia) = of_copies.as_ref().and_then(|of_copies| of_copies.inertia(&copies)) {
+            entity.insert(inertia);
+        }
         entity.id()
     }
 
-    /// The parameters of each copy, where they differ.
-    fn per_copy(&self, body: &str, material: &str) -> Option<LawCopies<f64>> {
-        let scene = &self.assembly.scene.scene;
-        let of_copy = parameters_of_copies(scene, scene, body, material)?;
+    /// The copy of each element.
+    fn copies(&self) -> impl Iterator<Item = u32> {
         let points = self.mesh.points.len().div_ceil(self.copies).max(1);
-        let copies = self.elements.iter().map(|&element| self.mesh.element(element as usize)[0] / points as u32);
-        Some(LawCopies::new(of_copy, copies.collect()))
+        self.elements.iter().map(move |&element| self.mesh.element(element as usize)[0] / points as u32)
     }
 
     fn padded(&self) -> usize {

@@ -1,7 +1,7 @@
 //! Node columns of a body, and what blocks need once the time step is known.
 
 use super::Assembly;
-use crate::backend::cpu::{BlockLaw, LawParameters, OwnKernels, PerCopyLaw};
+use crate::backend::cpu::{BlockLaw, LawCopies, LawParameters, OwnKernels, PerCopyLaw};
 use crate::components::*;
 use crate::elements::Stiffness;
 use crate::elements::{node_count, point_count};
@@ -79,16 +79,6 @@ pub(super) fn insert_node_columns(
     }
 }
 
-/// Blocks of a body with their connectivity.
-fn blocks<'a>(
-    entities: &'a [Entity],
-    world: &'a World,
-) -> impl Iterator<Item = (&'a Block, &'a Connectivity, &'a RestShape)> {
-    entities.iter().filter_map(|&entity| {
-        Some((world.get::<Block>(entity)?, world.get::<Connectivity>(entity)?, world.get::<RestShape>(entity)?))
-    })
-}
-
 /// Which elements of a block meet in each of a body's nodes.
 pub(super) fn block_corners(kind: ElementKind, count: usize, connectivity: &[u32], nodes: usize) -> BlockCorners {
     let corners = node_count(kind);
@@ -110,10 +100,12 @@ pub(super) fn block_corners(kind: ElementKind, count: usize, connectivity: &[u32
 /// Lumped mass (kg) and damping coefficient (kg/s) of every node, from the elements that still have volume.
 pub fn nodal_masses(entities: &[Entity], count: usize, world: &World) -> (Vec<f64>, Vec<f64>) {
     let (mut mass, mut damping) = (vec![0.0; count], vec![0.0; count]);
-    for (block, connectivity, shape) in blocks(entities, world) {
-        let density = world.get::<Density>(block.material).map_or(0.0, |d| d.0);
-        let rate = world.get::<Damping>(block.material).map_or(0.0, |d| d.0);
-        add_nodal_masses(block, connectivity, shape, density, rate, &mut mass, &mut damping);
+    for &entity in entities {
+        let parts = (world.get::<Block>(entity), world.get::<Connectivity>(entity), world.get::<RestShape>(entity));
+        if let (Some(block), Some(connectivity), Some(shape)) = parts {
+            let inertia = ElementInertia::of(world, entity);
+            add_nodal_masses(block, connectivity, shape, inertia, &mut mass, &mut damping);
+        }
     }
     (mass, damping)
 }
@@ -121,14 +113,24 @@ pub fn nodal_masses(entities: &[Entity], count: usize, world: &World) -> (Vec<f6
 /// What the stable step depends on, of the material of a block: of each copy where it differs, else one.
 pub fn stiffnesses(world: &World, entity: Entity) -> Vec<Stiffness> {
     let Some(material) = world.get::<Block>(entity).map(|block| block.material) else { return Vec::new() };
-    let density = world.get::<Density>(material).map_or(0.0, |d| d.0);
+    let inertia = ElementInertia::of(world, entity);
+    let density = |copy: usize| inertia.of_copy(copy)[0];
     if let Some(PerCopyLaw(copies)) = world.get(entity) {
-        return copies.of_copy.iter().map(|of_copy| stiffness_of(of_copy, density)).collect();
+        let each = copies.of_copy.iter().enumerate();
+        return each.map(|(copy, of_copy)| stiffness_of(of_copy, density(copy))).collect();
     }
     let Some(elastic) = ElasticLaw::of(world.entity(material)) else { return Vec::new() };
     let exponential = world.get::<ExponentialFibres>(material).map_or(Vec::new(), |all| all.0.clone());
     let fibres = world.get::<Fibres<f64>>(material).copied();
-    vec![stiffness_of(&LawParameters { elastic, fibres, exponential }, density)]
+    let law = LawParameters { elastic, fibres, exponential, terms: Vec::new() };
+    let copies = world.get::<PerCopyInertia>(entity).map_or(1, |own| own.of_copy.len());
+    (0..copies).map(|copy| stiffness_of(&law, density(copy))).collect()
+}
+
+/// The copy of each element of a block, by its row, where copies differ in what [`stiffnesses`] depend on.
+pub fn copies_of_elements(world: &World, entity: Entity) -> Option<&[u32]> {
+    let of_law = world.get::<PerCopyLaw>(entity).map(|PerCopyLaw(law)| &*law.copies);
+    of_law.or_else(|| world.get::<PerCopyInertia>(entity).map(|own| &*own.copies))
 }
 
 fn stiffness_of(law: &LawParameters<f64>, density: f64) -> Stiffness {
@@ -141,6 +143,13 @@ fn stiffness_of(law: &LawParameters<f64>, density: f64) -> Stiffness {
         eta: law.fibres.map_or(0.0, |fibres| fibres.eta) + families,
         density,
     }
+}
+
+/// The laws of a block's copies, where they differ, with what each remembers, where that does, for the clock's step.
+pub(super) fn law_copies(world: &World, entity: Entity, clock: &Clock) -> Option<Arc<LawCopies<f64>>> {
+    let PerCopyLaw(copies) = world.get(entity)?;
+    let memories = world.get::<PerCopyMemory>(entity);
+    Some(memories.map_or_else(|| Arc::clone(copies), |memories| Arc::new(copies.with_memories(&memories.0, clock))))
 }
 
 /// Gives every block its law, in f64 for looking at it and in the run's precision for its kernel, and its history.
@@ -156,7 +165,8 @@ pub fn insert_laws(precision: Precision, world: &mut World) {
         let fibres = fibres.and_then(|fibres| directions.next().map(|from| (fibres, from)));
         let families = world.get::<ExponentialFibres>(block.material).map_or(Vec::new(), |all| all.0.clone());
         let prony = world.get::<Prony>(block.material);
-        let [terms, volumetric] = memory_terms(world, block.material, &clock);
+        let [terms, volumetric] = ElementMemory::of(world, block.material).terms(&clock);
+        let copies = law_copies(world, entity, &clock);
         let law = BlockLaw {
             elastic,
             fibres,
@@ -164,7 +174,7 @@ pub fn insert_laws(precision: Precision, world: &mut World) {
             prony: terms,
             volumetric,
             reproject: prony.is_some_and(|prony| prony.reproject),
-            copies: world.get::<PerCopyLaw>(entity).map(|PerCopyLaw(copies)| Arc::clone(copies)),
+            copies,
             own_kernels: world.get::<OwnKernels>(block.material).cloned(),
         };
         let memory = law.memory_numbers(point_count(block.kind)) * block.count.div_ceil(LANES) * LANES;

@@ -92,7 +92,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
                 let (mut displacement, mut gradient) = (*displacement, slopes);
                 if let Some(per_copy) = per_copy {
                     // each node's own motion is its arm, of which the curve takes a part
-                    let factors = per_copy.values(&format!("constraints[{number}]"), body.copies);
+                    let factors = per_copy.vectors(&format!("constraints[{number}]"), body.copies);
                     for (arm, factor) in arms.iter_mut().zip(body.of_rows(&rows, &factors)) {
                         *arm = factor * (slopes * *arm + displacement);
                     }

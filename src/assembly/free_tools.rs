@@ -69,7 +69,7 @@ fn inertia(free: &Free, geometry: &Geometry) -> Option<Inertia> {
 /// Slots of accelerations that act on all bodies.
 fn gravity(assembly: &Assembly<'_>, world: &mut World) -> Vec<usize> {
     let all = assembly.scene.scene.loads.iter().enumerate();
-    let on_all = |load: &Load| load.parts().on == On::Bodies && load.parts().body.is_none();
+    let on_all = |load: &Load| matches!(load.parts().on, On::Bodies(_)) && load.parts().body.is_none();
     let acts = all.filter(|(_, load)| on_all(load) && loads::has_weight(load));
     acts.map(|(number, load)| world.resource_mut::<Signals>().add_load(number, load, 1.0)).collect()
 }

@@ -4,7 +4,7 @@ use super::{Assembly, BodyParts};
 use crate::components::*;
 use crate::mesh::{CellKind, SurfaceFace};
 use crate::scene::diagnostic::Diagnostics;
-use crate::scene::schema::{Load, LoadParts, On, Share};
+use crate::scene::schema::{Load, LoadParts, On, PerCopy, Share};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use std::collections::BTreeSet;
@@ -38,12 +38,20 @@ fn acted_on(
     let Some(select) = on.select() else {
         let named = name.and_then(|name| assembly.bodies.get(name));
         let bodies = named.map_or(assembly.bodies.values().collect(), |body| vec![body]);
-        return Some((bodies.into_iter().map(|body| body.entity).collect(), LoadedRows::All, 1.0));
+        let factors = match (on.per_copy(), bodies.as_slice()) {
+            (Some(per_copy), [body]) => {
+                let rows: Vec<u32> = (0..body.node_rows.len() as u32).collect();
+                body.of_rows(&rows, &factors_of(per_copy, number, body))
+            }
+            _ => Vec::new(),
+        };
+        let on = LoadedRows::All(Arc::new(factors));
+        return Some((bodies.into_iter().map(|body| body.entity).collect(), on, 1.0));
     };
     let path = format!("loads[{number}].on");
     let body = assembly.body(&name.cloned())?;
     let picked = assembly.pick(body, select, &path, diagnostics)?;
-    let factors = on.per_copy().map(|per_copy| per_copy.values(&format!("loads[{number}]"), body.copies));
+    let factors = on.per_copy().map(|per_copy| factors_of(per_copy, number, body));
     let found = match on {
         On::Nodes(_, share, _) => picked.nodes(&body.placed).map(|marks| {
             let rows = body.rows_of(&marks);
@@ -53,7 +61,7 @@ fn acted_on(
             let parts = if share == Share::Total { each } else { 1.0 };
             (LoadedRows::Nodes(Arc::new(LoadedNodes { rows, factors })), parts)
         }),
-        On::Bodies | On::Faces(..) => {
+        On::Bodies(_) | On::Faces(..) => {
             let faces = picked.faces(&body.placed);
             faces.map(|places| (LoadedRows::Faces(Arc::new(face_corners(body, &places, factors.as_deref()))), 1.0))
         }
@@ -67,20 +75,25 @@ fn acted_on(
     }
 }
 
+/// What the load of a number is multiplied with in each copy along each axis.
+fn factors_of(per_copy: &PerCopy, number: usize, body: &BodyParts) -> Vec<[f64; 3]> {
+    per_copy.vectors(&format!("loads[{number}]"), body.copies).into_iter().map(Into::into).collect()
+}
+
 /// Whether a load ever pushes.
 pub(super) fn has_weight(load: &Load) -> bool {
     load.amplitude() != DVec3::ZERO
 }
 
 /// Chosen faces of the surface, by the nodes they load, and how much they count in each copy.
-fn face_corners(body: &BodyParts, places: &[usize], factors: Option<&[f64]>) -> FaceCorners {
+fn face_corners(body: &BodyParts, places: &[usize], factors: Option<&[[f64; 3]]>) -> FaceCorners {
     let mut corners = corners_of(body, places.iter().map(|&place| &body.placed.surface()[place])).0;
     if let Some(factors) = factors {
+        // a pressure has one number, the same along all axes
         let rows: Vec<u32> = corners.faces.iter().map(|face| face[0]).collect();
-        for (face, factor) in body.of_rows(&rows, factors).into_iter().enumerate() {
-            corners.weights[face] *= factor;
-            corners.areas[face].iter_mut().for_each(|area| *area *= factor);
-        }
+        let of_faces = body.of_rows(&rows, factors);
+        corners.weights.iter_mut().zip(of_faces).for_each(|(weight, [factor, ..])| *weight *= factor);
+        corners.factors = body.of_rows(&corners.rows, factors);
     }
     corners
 }

@@ -2,12 +2,16 @@
 
 use super::user_laws;
 use crate::backend::cpu::LawParameters;
-use crate::components::{Damping, Density, ExponentialFibres, Label, Prony, StiffnessDamping};
+use crate::components::{
+    Damping, Density, ElementMemory, ExponentialFibres, Label, PerCopyInertia, PerCopyMemory, Prony, StiffnessDamping,
+};
 use crate::materials::{ElasticLaw, ExponentialFibre, Fibres, each_elastic_law};
-use crate::scene::CopiedMaterial;
+
 use crate::scene::schema::{self, Material};
+use crate::scene::{CopiedMaterial, Part};
 use bevy_ecs::prelude::*;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// The materials of a scene, by name.
 pub(super) fn spawn(
@@ -36,13 +40,7 @@ pub(super) fn spawn(
             entity.insert(ExponentialFibres(families.iter().map(family_of).collect()));
         }
         if let Some(prony) = &material.prony {
-            let terms = |terms: &[schema::PronyTerm]| terms.iter().map(|term| (term.alpha, term.tau)).collect();
-            entity.insert(Prony {
-                terms: terms(&prony.terms),
-                volumetric: terms(&prony.volumetric),
-                integrator: prony.integrator,
-                reproject: prony.reproject,
-            });
+            entity.insert(prony_of(prony));
         }
         if let Some(rate) = material.damping {
             entity.insert(Damping(rate));
@@ -55,27 +53,60 @@ pub(super) fn spawn(
     spawned
 }
 
-/// Parameters of a body's material in each of its copies, of the effects that it was made with: `made` and `now` are
-/// scenes. `None` where all have the same.
-pub(super) fn parameters_of_copies(
-    made: &schema::Scene,
-    now: &schema::Scene,
-    body: &str,
-    material: &str,
-) -> Option<Vec<LawParameters<f64>>> {
-    let (body, made, now) = (now.bodies.get(body)?, made.materials.get(material)?, now.materials.get(material)?);
-    let copied = CopiedMaterial::of(body, material, now)?;
-    let of_copy = |copy: usize| {
-        let of_copy = copied.of_copy(copy)?;
-        let fibres = made.fibres.as_ref().filter(|fibres| fibres.eta != 0.0);
-        let families = made.exponential_fibres.iter().flatten().zip(of_copy.exponential_fibres.iter().flatten());
-        Some(LawParameters {
-            elastic: of_copy.elastic_law()?,
-            fibres: fibres.and(of_copy.fibres.as_ref()).map(fibres_of),
-            exponential: families.filter(|(made, _)| made.k1 != 0.0).map(|(_, family)| family_of(family)).collect(),
-        })
-    };
-    (0..body.copies as usize).map(of_copy).collect()
+/// A body's material in each of its copies.
+pub(super) struct OfCopies {
+    copied: CopiedMaterial,
+    /// Of each, without the effects that have no weight in the material that it was made with.
+    materials: Vec<Material>,
+}
+
+impl OfCopies {
+    /// Of a material of a body, of the effects that it was made with: `made` and `now` are scenes. `None` where all
+    /// copies have the same.
+    pub fn of(made: &schema::Scene, now: &schema::Scene, body: &str, material: &str) -> Option<Self> {
+        let (body, made, now) = (now.bodies.get(body)?, made.materials.get(material)?, now.materials.get(material)?);
+        let copied = CopiedMaterial::of(body, material, now)?;
+        let of_copy = |copy: usize| Some(called_for_in(made, copied.of_copy(copy)?));
+        let materials = (0..body.copies as usize).map(of_copy).collect::<Option<_>>()?;
+        Some(Self { copied, materials })
+    }
+
+    /// Parameters of the law of each, where these or what elements remember differ.
+    pub fn laws(&self) -> Option<Vec<LawParameters<f64>>> {
+        let of_copy = |material: &Material| {
+            Some(LawParameters {
+                elastic: material.elastic_law()?,
+                fibres: material.fibres.as_ref().map(fibres_of),
+                exponential: material.exponential_fibres.iter().flatten().map(family_of).collect(),
+                terms: Vec::new(),
+            })
+        };
+        let differs = self.copied.differs_in(Part::Law) || self.copied.differs_in(Part::Memory);
+        self.materials.iter().map(of_copy).collect::<Option<_>>().filter(|_| differs)
+    }
+
+    /// What elements of each remember, where it differs.
+    pub fn memories(&self) -> Option<PerCopyMemory> {
+        let of_copy = |material: &Material| ElementMemory {
+            prony: material.prony.as_ref().map(prony_of),
+            damping: material.stiffness_damping.map(StiffnessDamping),
+        };
+        let differs = self.copied.differs_in(Part::Memory);
+        differs.then(|| PerCopyMemory(self.materials.iter().map(of_copy).collect()))
+    }
+
+    /// What elements of each weigh by, where it differs.
+    pub fn inertia(&self, copies: &Arc<[u32]>) -> Option<PerCopyInertia> {
+        let of_copy = |material: &Material| [material.density, material.damping.unwrap_or(0.0)];
+        let of_copy = self.materials.iter().map(of_copy).collect();
+        self.copied.differs_in(Part::Inertia).then(|| PerCopyInertia { copies: Arc::clone(copies), of_copy })
+    }
+
+    /// Where fibres of the families of each run, in the order of [`directions`], where that differs.
+    pub fn directions(&self) -> Option<Vec<Vec<&schema::Direction>>> {
+        let of_copy = |material| directions(material).into_iter().map(|(_, direction)| direction).collect();
+        self.copied.differs_in(Part::Direction).then(|| self.materials.iter().map(of_copy).collect())
+    }
 }
 
 /// Takes the parameters that a material has now, of the effects that it was made with.
@@ -95,6 +126,16 @@ pub(super) fn renew(entity: &mut EntityWorldMut<'_>, made: &Material, now: &Mate
     }
 }
 
+fn prony_of(prony: &schema::Prony) -> Prony {
+    let terms = |terms: &[schema::PronyTerm]| terms.iter().map(|term| (term.alpha, term.tau)).collect();
+    Prony {
+        terms: terms(&prony.terms),
+        volumetric: terms(&prony.volumetric),
+        integrator: prony.integrator,
+        reproject: prony.reproject,
+    }
+}
+
 fn fibres_of(fibres: &schema::Fibres) -> Fibres<f64> {
     Fibres { eta: fibres.eta, tension_only: number(fibres.tension_only) }
 }
@@ -110,19 +151,28 @@ fn family_of(family: &schema::ExponentialFibres) -> ExponentialFibre<f64> {
 
 /// A material without the effects that have no weight: they cost nothing, and change nothing to the last bit.
 pub(super) fn called_for(material: &Material) -> Material {
-    let mut material = material.clone();
-    material.fibres = material.fibres.filter(|fibres| fibres.eta != 0.0);
-    if let Some(families) = &mut material.exponential_fibres {
-        families.retain(|family| family.k1 != 0.0);
+    called_for_in(material, material.clone())
+}
+
+/// A material with the effects that have a weight in another one, which differs from it in numbers only.
+fn called_for_in(made: &Material, mut material: Material) -> Material {
+    fn keep<T, M>(list: &mut Vec<T>, made: &[M], has_weight: impl Fn(&M) -> bool) {
+        let mut weights = made.iter().map(has_weight);
+        list.retain(|_| weights.next().unwrap_or(false));
+    }
+    material.fibres = material.fibres.filter(|_| made.fibres.as_ref().is_some_and(|fibres| fibres.eta != 0.0));
+    if let (Some(families), Some(made)) = (&mut material.exponential_fibres, &made.exponential_fibres) {
+        keep(families, made, |family| family.k1 != 0.0);
     }
     material.exponential_fibres = material.exponential_fibres.filter(|families| !families.is_empty());
-    if let Some(prony) = &mut material.prony {
-        prony.terms.retain(|term| term.alpha != 0.0);
-        prony.volumetric.retain(|term| term.alpha != 0.0);
+    if let (Some(prony), Some(made)) = (&mut material.prony, &made.prony) {
+        keep(&mut prony.terms, &made.terms, |term| term.alpha != 0.0);
+        keep(&mut prony.volumetric, &made.volumetric, |term| term.alpha != 0.0);
     }
     material.prony = material.prony.filter(|prony| !(prony.terms.is_empty() && prony.volumetric.is_empty()));
-    material.damping = material.damping.filter(|&rate| rate != 0.0);
-    material.stiffness_damping = material.stiffness_damping.filter(|&time| time != 0.0);
+    let has_weight = |made: Option<f64>| made.is_some_and(|number| number != 0.0);
+    material.damping = material.damping.filter(|_| has_weight(made.damping));
+    material.stiffness_damping = material.stiffness_damping.filter(|_| has_weight(made.stiffness_damping));
     material
 }
 

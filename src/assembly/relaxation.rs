@@ -32,9 +32,10 @@ pub(super) fn insert_fictitious_masses(assembly: &Assembly<'_>, world: &mut Worl
                 continue;
             };
             let Some(frequency) = square_frequency(world, entity, block) else { continue };
-            let density = world.get::<Density>(block.material).map_or(0.0, |density| density.0);
+            let inertia = ElementInertia::of(world, entity);
             let shares = mass_shares(block.kind);
             for row in 0..block.count {
+                let density = inertia.of_row(row)[0];
                 let whole = density * rest_volume(block, row, shape) * 0.25 * frequency(row) * time_step * time_step;
                 for (corner, share) in shares.iter().enumerate() {
                     mass[connectivity[lane_place(row, shares.len(), corner)] as usize] += whole * share;

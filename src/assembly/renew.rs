@@ -45,7 +45,8 @@ fn renew_copies(entity: Entity, (made, now): (&Scene, &Scene), world: &mut World
     let (Some(body), Some(material)) = (world.get::<Label>(block.body), world.get::<Label>(block.material)) else {
         return;
     };
-    let Some(of_copy) = material::parameters_of_copies(made, now, &body.0, &material.0) else { return };
+    let of_copies = material::OfCopies::of(made, now, &body.0, &material.0);
+    let Some(of_copy) = of_copies.and_then(|of_copies| of_copies.laws()) else { return };
     let copies = LawCopies::new(of_copy, Arc::clone(&before.copies));
     world.entity_mut(entity).insert(PerCopyLaw(Arc::new(copies)));
 }
@@ -62,7 +63,7 @@ fn renew_block(entity: Entity, made: &Scene, world: &mut World) -> Option<BlockL
     for ((family, _), now) in law.exponential.iter_mut().zip(families.iter().flat_map(|families| &families.0)) {
         *family = *now;
     }
-    law.copies = world.get::<PerCopyLaw>(entity).map(|PerCopyLaw(copies)| Arc::clone(copies));
+    law.copies = super::body_columns::law_copies(world, entity, world.resource::<Clock>());
     if law == before {
         return None;
     }

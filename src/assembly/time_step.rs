@@ -1,8 +1,7 @@
 //! The stable step, from the element bound, and the elements that set it.
 
-use super::body_columns::stiffnesses;
+use super::body_columns::{copies_of_elements, stiffnesses};
 use crate::backend::cpu::Cpu;
-use crate::backend::cpu::PerCopyLaw;
 use crate::components::*;
 use crate::elements::with_element_of;
 use crate::elements::{Element, MOST_ROWS};
@@ -63,11 +62,27 @@ pub(super) fn square_frequency<'a>(
     square_frequency_of(world, entity, block, |number| number)
 }
 
-/// β of a block's damping (s); 0 where there is none, and in a static analysis.
-pub fn damping_time(world: &World, block: &Block) -> f64 {
+/// β of a block's damping (s), of each copy where it differs, else one; 0 where there is none, and in a static
+/// analysis.
+pub fn damping_times(world: &World, entity: Entity) -> Vec<f64> {
     let moves = world.get_resource::<Clock>().is_none_or(|clock| clock.relaxation.is_none());
-    let damping = world.get::<StiffnessDamping>(block.material).filter(|_| moves);
-    damping.map_or(0.0, |damping| damping.0)
+    let time = |damping: Option<StiffnessDamping>| damping.filter(|_| moves).map_or(0.0, |damping| damping.0);
+    if let Some(PerCopyMemory(of_copies)) = world.get(entity) {
+        return of_copies.iter().map(|memory| time(memory.damping)).collect();
+    }
+    let material = world.get::<Block>(entity).map(|block| block.material);
+    vec![time(material.and_then(|material| world.get(material)).copied())]
+}
+
+/// The same of an element by its row.
+fn damping_time_of(world: &World, entity: Entity) -> impl Fn(usize) -> f64 + Sync + '_ {
+    let times = damping_times(world, entity);
+    let copies = copies_of_elements(world, entity);
+    move |row| match (times.as_slice(), copies) {
+        (&[of_all], _) => of_all,
+        (of_copies, Some(copies)) => of_copies[copies[row] as usize],
+        _ => 0.0,
+    }
 }
 
 /// ω² (1/s²) that without damping would allow the same step 2/ω as an ω² with damping β (s): 4/Δt² of Δt =
@@ -89,7 +104,7 @@ fn square_frequency_of<'a>(
     made: impl Fn(f64) -> f64 + Sync + 'a,
 ) -> Option<impl Fn(usize) -> f64 + Sync + 'a> {
     let stiffnesses = stiffnesses(world, entity);
-    let copies = world.get::<PerCopyLaw>(entity).map(|PerCopyLaw(law)| &law.copies);
+    let copies = copies_of_elements(world, entity);
     let shape = world.get::<RestShape>(entity)?;
     let first = *stiffnesses.first()?;
     Some(move |row: usize| {
@@ -107,9 +122,9 @@ fn square_frequency_of<'a>(
 /// Squared frequency bound (1/s²) and volume (m³) of all elements of a block; both 0 of removed ones. With damping
 /// proportional to stiffness it is that of the same step, see [`damped`].
 pub fn square_frequencies(world: &World, entity: Entity) -> Vec<(f64, f64)> {
-    let beta = world.get::<Block>(entity).map_or(0.0, |block| damping_time(world, block));
-    let undamped = undamped_square_frequencies(world, entity).into_iter();
-    undamped.map(|(square, volume)| (damped(square, beta), volume)).collect()
+    let beta = damping_time_of(world, entity);
+    let undamped = undamped_square_frequencies(world, entity).into_iter().enumerate();
+    undamped.map(|(row, (square, volume))| (damped(square, beta(row)), volume)).collect()
 }
 
 /// What [`undamped_square_frequencies`] found of each block when the step was chosen, until the run checks elements
@@ -145,11 +160,10 @@ pub fn alike_in_any_precision(world: &World, entity: Entity) -> Vec<(f64, f64)> 
     let Some(block) = world.get::<Block>(entity) else { return Vec::new() };
     let frequency = square_frequency_of(world, entity, block, short);
     let (Some(frequency), Some(shape)) = (frequency, world.get::<RestShape>(entity)) else { return Vec::new() };
-    let density = world.get::<Density>(block.material).map_or(0.0, |density| density.0);
-    let beta = damping_time(world, block);
+    let (inertia, beta) = (ElementInertia::of(world, entity), damping_time_of(world, entity));
     let of_row = |row: usize| {
         let volume = short(rest_volume(block, row, shape));
-        if volume > 0.0 { (damped(frequency(row), beta), density * volume) } else { (0.0, 0.0) }
+        if volume > 0.0 { (damped(frequency(row), beta(row)), inertia.of_row(row)[0] * volume) } else { (0.0, 0.0) }
     };
     world.resource::<Cpu>().confine(|| (0..block.count).into_par_iter().map(of_row).collect())
 }

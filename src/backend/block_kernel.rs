@@ -77,6 +77,14 @@ pub(crate) fn law_uniforms(law: &BlockLaw<f32>, label: &str) -> [Option<(String,
     parts.map(|(name, bytes)| (!bytes.is_empty()).then(|| (format!("{name} of {label}"), bytes)))
 }
 
+/// The terms of what all elements of a law remember, with the label of their uniform, where there are any and copies do
+/// not differ in them.
+pub(crate) fn terms_uniform(law: &BlockLaw<f32>, label: &str) -> Option<(String, Vec<u8>)> {
+    let differ = law.copies.as_ref().is_some_and(|copies| copies.have_terms());
+    let bytes: Vec<u8> = law.prony.iter().chain(&law.volumetric).flat_map(Uniform::bytes).collect();
+    (!differ && !bytes.is_empty()).then(|| (format!("prony of {label}"), bytes))
+}
+
 /// The numbers in which elements' laws differ from copy to copy, with the label of their buffer.
 pub(crate) fn law_numbers(law: &BlockLaw<f32>, label: &str) -> Option<(String, Vec<u8>)> {
     let copies = law.copies.as_ref()?;
@@ -204,11 +212,12 @@ impl BlockKernels {
             .bind_uniform::<Block>("block", self.parameters)
     }
 
-    /// Adds the parameters of the elastic law, if it has any, or those in which each element has its own.
-    fn with_parameters(&self, kernel: Kernel) -> Kernel {
+    /// Adds the parameters of the elastic law, if it has any, or those in which each element has its own, with the
+    /// terms of what it remembers or without.
+    fn with_parameters(&self, kernel: Kernel, remembers: bool) -> Kernel {
         match (self.law_numbers, self.elastic) {
             (Some(numbers), _) => kernel
-                .fragment(self.generated("law of an element", law_of_element(&self.law)))
+                .fragment(self.generated("law of an element", law_of_element(&self.law, remembers)))
                 .bind("law_numbers", numbers),
             (None, Some(buffer)) => kernel.fragment(shader!("law_of_all")).bind("elastic", buffer),
             (None, None) => kernel.fragment(shader!("law_of_all")),
@@ -306,17 +315,18 @@ impl BlockKernels {
         if terms + volumetric > 0 {
             text += &format!("const TERMS: u32 = {terms}u;\nconst VOLUMETRIC_TERMS: u32 = {volumetric}u;\n");
         }
-        let kernel = self.with_fibres(self.with_parameters(kernel));
+        let kernel = self.with_fibres(self.with_parameters(kernel, true));
         let kernel = self.with_pressure(kernel, at, buffers).fragment(self.generated("stress", text));
         if terms + volumetric == 0 {
             return kernel;
         }
-        let bytes: Vec<u8> = law.prony.iter().chain(&law.volumetric).flat_map(Uniform::bytes).collect();
-        let prony = buffers.uniform(format!("prony of {}", self.label), &bytes);
-        kernel
-            .fragment(shader!("prony"))
-            .bind_uniform::<PronyTerm<f32>>("prony", prony)
-            .bind(ViscousMemory::NAME, buffers.column(self.entity, ViscousMemory::NAME))
+        let kernel = match terms_uniform(law, &self.label) {
+            Some((label, bytes)) => kernel
+                .fragment(shader!("prony"))
+                .bind_uniform::<PronyTerm<f32>>("prony", buffers.uniform(label, &bytes)),
+            None => kernel.fragment(shader!("prony").with_private("prony")),
+        };
+        kernel.bind(ViscousMemory::NAME, buffers.column(self.entity, ViscousMemory::NAME))
     }
 
     /// Adds the elastic energy per rest volume of the material.
@@ -328,7 +338,7 @@ impl BlockKernels {
         let energies: Vec<&str> = energies.into_iter().flatten().collect();
         let sum = if energies.is_empty() { "0.0".into() } else { energies.join(" + ") };
         let text = format!("fn fibres_energy_at(element: u32, k: Kinematics) -> f32 {{\n    return {sum};\n}}\n");
-        self.with_pressure(self.with_fibres(self.with_parameters(kernel)), CornersAt::Columns, buffers)
+        self.with_pressure(self.with_fibres(self.with_parameters(kernel, false)), CornersAt::Columns, buffers)
             .fragment(shader!("energy"))
             .fragment(self.generated("energy", text))
     }

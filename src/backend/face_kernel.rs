@@ -30,12 +30,14 @@ pub(crate) fn face_loads(faces: &FaceCorners, body: Entity, world: &World) -> Ve
 
 /// Only the faces of a block's elements; the lists of all faces stay as they are.
 fn faces_behind(faces: &FaceCorners, block: u32) -> FaceCorners {
-    let mut some = FaceCorners { rows: Vec::new(), starts: vec![0], corners: Vec::new(), ..faces.clone() };
+    let (rows, factors) = (Vec::new(), Vec::new());
+    let mut some = FaceCorners { rows, factors, starts: vec![0], corners: Vec::new(), ..faces.clone() };
     for (i, &row) in faces.rows.iter().enumerate() {
         let corners = &faces.corners[faces.starts[i] as usize..faces.starts[i + 1] as usize];
         some.corners.extend(corners.iter().filter(|&&corner| faces.elements[corner as usize / 4].0 == block));
         if some.corners.len() as u32 > some.starts[some.rows.len()] {
             some.rows.push(row);
+            some.factors.extend(faces.factors.get(i));
             some.starts.push(some.corners.len() as u32);
         }
     }

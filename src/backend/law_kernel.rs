@@ -51,12 +51,13 @@ pub(super) fn family_directions(families: &[(ExponentialFibre<f32>, FamilyDirect
 }
 
 /// WGSL that gives an invocation the law of its element, where the parameters in
-/// [`LawParameters::numbers`](super::cpu::LawParameters::numbers) differ from copy to copy.
-pub(super) fn law_of_element(law: &BlockLaw<f32>) -> String {
-    let rows = law.copies.as_ref().map_or(0, |copies| copies.rows);
+/// [`LawParameters::numbers`](super::cpu::LawParameters::numbers) differ from copy to copy; terms of what it
+/// `remembers` are known only to kernels that carry that on.
+pub(super) fn law_of_element(law: &BlockLaw<f32>, remembers: bool) -> String {
+    let (rows, of_law) = law.copies.as_ref().map_or((0, 0), |copies| (copies.rows, copies.of_law));
     let families = &law.exponential;
     let fibres = law.fibres.as_ref().map(|(fibres, _)| fibres);
-    let of_elastic = rows - 2 * families.len() - usize::from(fibres.is_some());
+    let of_elastic = of_law - 2 * families.len() - usize::from(fibres.is_some());
     let mut text = format!(
         "@group(0) @binding(0) var<storage, read> law_numbers: array<f32>;\n\
          fn law_number(element: u32, k: u32) -> f32 {{\n    return law_numbers[place(element, {rows}u, k)];\n}}\n\
@@ -95,6 +96,10 @@ pub(super) fn law_of_element(law: &BlockLaw<f32>) -> String {
             k + 1
         );
         k += 2;
+    }
+    for (number, k) in (of_law..rows).step_by(4).enumerate().filter(|_| remembers) {
+        let numbers: Vec<String> = (k..k + 4).map(|k| format!("law_number(element, {k}u)")).collect();
+        text += &format!("    prony[{number}] = PronyTerm({});\n", numbers.join(", "));
     }
     text + "}\n"
 }

@@ -18,8 +18,8 @@ pub struct SceneLoad {
 /// What a load acts on.
 #[derive(Clone, Debug)]
 pub enum LoadedRows {
-    /// All of the body.
-    All,
+    /// All of the body, and what the load is multiplied with at each row along each axis; empty: 1 at all.
+    All(Arc<Vec<[f64; 3]>>),
     /// Some nodes.
     Nodes(Arc<LoadedNodes>),
     /// Faces of the surface.
@@ -30,6 +30,11 @@ impl LoadedRows {
     /// The nodes, if it acts on some.
     pub fn nodes(&self) -> Option<&Arc<LoadedNodes>> {
         if let Self::Nodes(nodes) = self { Some(nodes) } else { None }
+    }
+
+    /// Factors at all rows of the body, if it acts on all.
+    pub fn all(&self) -> Option<&Arc<Vec<[f64; 3]>>> {
+        if let Self::All(factors) = self { Some(factors) } else { None }
     }
 
     /// The faces, if it acts on some.
@@ -43,8 +48,8 @@ impl LoadedRows {
 pub struct LoadedNodes {
     /// Rows of the body's node columns, ascending.
     pub rows: Vec<u32>,
-    /// What the load is multiplied with at each row; empty: 1 at all.
-    pub factors: Vec<f64>,
+    /// What the load is multiplied with at each row along each axis; empty: 1 at all.
+    pub factors: Vec<[f64; 3]>,
 }
 
 /// Which of a load's faces are there: 1 while the element behind a face is, else 0.
@@ -86,6 +91,8 @@ pub struct FaceCorners {
     /// The element behind each face: place of its block in the body's list, and its row there. A removed element's
     /// faces bear no load.
     pub elements: Vec<(u32, u32)>,
+    /// What a load along axes is multiplied with at each row along each of them; empty: 1 at all.
+    pub factors: Vec<[f64; 3]>,
     /// Rest area of each face that falls to each of its corners (m²), times its weight.
     pub areas: Vec<[f64; 4]>,
     /// Which of them are there.

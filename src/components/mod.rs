@@ -79,7 +79,9 @@ pub use input::{Change, Input, InputState};
 #[doc(hidden)]
 pub use load::{FaceCorners, FaceMarks, LoadedNodes, LoadedRows, SceneLoad};
 #[doc(hidden)]
-pub use material::{ExponentialFibres, Prony, StiffnessDamping, memory_terms};
+pub use material::{
+    ElementInertia, ElementMemory, ExponentialFibres, PerCopyInertia, PerCopyMemory, Prony, StiffnessDamping,
+};
 #[doc(hidden)]
 pub use nodes::{
     Acceleration, ChosenBy, Corners, FirstNonFinite, GROUP_ROWS, InternalWork, MiddleDisplacement, NodeSums,

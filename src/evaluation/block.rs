@@ -71,14 +71,15 @@ impl<'a> BlockView<'a> {
         let mut stress = isochoric;
         let mut pressure = instant;
         if let Some(memory) = self.memory {
-            let (terms, points) = (law.prony.len(), point_count(state.kind));
+            let [prony, volumetric] = law.terms_of(row);
+            let (terms, points) = (prony.len(), point_count(state.kind));
             let history = |place: usize| memory.get(lane_place(row, law.memory_numbers(points), place));
-            for (number, term) in law.prony.iter().enumerate() {
+            for (number, term) in prony.iter().enumerate() {
                 let first = 6 * (point * terms + number);
                 let history = Sym3(std::array::from_fn(|i| history(first + i)));
                 stress = stress.plus(&term.relaxed(&isochoric, &history).scaled(-1.0));
             }
-            for (number, term) in law.volumetric.iter().enumerate() {
+            for (number, term) in volumetric.iter().enumerate() {
                 pressure -= term.relaxed_component(instant, history(6 * terms * points + number));
             }
             if law.reproject {

@@ -39,14 +39,14 @@ pub fn add_nodal_masses(
     block: &Block,
     connectivity: &[u32],
     shape: &Reals,
-    density: f64,
-    rate: f64,
+    inertia: ElementInertia<'_>,
     mass: &mut [f64],
     damping: &mut [f64],
 ) {
     let nodes = node_count(block.kind);
     let shares = mass_shares(block.kind);
     for row in 0..block.count {
+        let [density, rate] = inertia.of_row(row);
         let whole = density * rest_volume(block, row, shape);
         for (corner, share) in shares.iter().enumerate() {
             let (node, share) = (connectivity[lane_place(row, nodes, corner)] as usize, whole * share);

@@ -244,9 +244,14 @@ struct Held {
 fn held_by(seen: &Sample, world: &World) -> Held {
     let mut held = Held { lasting: 0.0, all: seen.kinetic, viscous: false };
     for (entity, sums) in &seen.parts {
-        let prony = world.get::<Block>(*entity).and_then(|block| world.get::<Prony>(block.material));
         let share = |terms: &[(f64, f64)]| terms.iter().map(|(alpha, _)| alpha).sum::<f64>();
-        let relaxed = prony.map_or(0.0, |prony| share(&prony.terms).max(share(&prony.volumetric)));
+        let relaxed = |prony: &Prony| share(&prony.terms).max(share(&prony.volumetric));
+        let of_all = world.get::<Block>(*entity).and_then(|block| world.get::<Prony>(block.material));
+        // of copies that differ, at least
+        let relaxed = match world.get::<PerCopyMemory>(*entity) {
+            None => of_all.map_or(0.0, relaxed),
+            Some(PerCopyMemory(all)) => all.iter().filter_map(|of| of.prony.as_ref()).map(relaxed).fold(0.0, f64::max),
+        };
         let damped = world
             .get::<Block>(*entity)
             .is_some_and(|block| world.entity(block.material).contains::<StiffnessDamping>());

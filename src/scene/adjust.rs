@@ -1,5 +1,6 @@
 //! What of a scene may change while it runs: parameters of the effects that materials have, and amplitudes of loads.
 
+use super::copied_material::{Part, split};
 use super::schema::{Load, Material, Scene};
 use super::syntax::Path;
 use glam::DVec3;
@@ -18,8 +19,11 @@ pub fn other_than_parameters(made: &Scene, now: &Scene) -> Option<Path> {
     for (name, body) in &mut same.bodies {
         let Some(now) = now.bodies.get(name) else { return Some(place("bodies")) };
         // what differs from copy to copy stays what does
-        if body.per_copy.keys().eq(now.per_copy.keys()) {
-            body.per_copy.clone_from(&now.per_copy);
+        for (key, values) in &mut body.per_copy {
+            let of_law = split(key).is_ok_and(|(_, way)| Part::of(&way) == Part::Law);
+            if let Some(now) = now.per_copy.get(key).filter(|_| of_law) {
+                values.clone_from(now);
+            }
         }
         if body != now {
             return Some(place("bodies").name(name));

@@ -37,8 +37,9 @@ pub struct Usual {
 /// What a load acts on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum On<'a> {
-    /// The whole body, or all bodies where it names none, rigid ones too: the amplitude is an acceleration of all mass.
-    Bodies,
+    /// The whole body, or all bodies where it names none, rigid ones too: the amplitude is an acceleration of all mass;
+    /// and its factors on the copies of a body that it names.
+    Bodies(Option<&'a PerCopy>),
     /// Nodes; how it is shared among them, and its factors on the body's copies.
     Nodes(&'a Select, Share, Option<&'a PerCopy>),
     /// Faces of the surface, and the factors.
@@ -49,7 +50,7 @@ impl<'a> On<'a> {
     /// The selection, where it is not all.
     pub fn select(self) -> Option<&'a Select> {
         match self {
-            Self::Bodies => None,
+            Self::Bodies(_) => None,
             Self::Nodes(on, ..) | Self::Faces(on, _) => Some(on),
         }
     }
@@ -57,8 +58,7 @@ impl<'a> On<'a> {
     /// Its factors on the body's copies, where they differ.
     pub fn per_copy(self) -> Option<&'a PerCopy> {
         match self {
-            Self::Bodies => None,
-            Self::Nodes(.., per_copy) | Self::Faces(_, per_copy) => per_copy,
+            Self::Bodies(per_copy) | Self::Nodes(.., per_copy) | Self::Faces(_, per_copy) => per_copy,
         }
     }
 }

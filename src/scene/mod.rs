@@ -32,7 +32,7 @@ pub mod validate;
 pub mod words;
 
 pub(crate) use adjust::other_than_parameters;
-pub(crate) use copied_material::CopiedMaterial;
+pub(crate) use copied_material::{CopiedMaterial, Part};
 pub use diagnostic::{Diagnostic, Diagnostics, Placed, Severity, TextFile};
 pub use file_access::FileSource;
 pub use limits::Allowed;

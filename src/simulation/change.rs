@@ -12,6 +12,7 @@ use crate::backend::cpu::BlockLaw;
 use crate::backend::device::{Device, bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::Error;
+use crate::materials::PronyTerm;
 use crate::observation::held_for_long;
 use crate::scene::schema::{Scene, WhenUnstable};
 use crate::scene::{SceneFile, other_than_parameters, validate};
@@ -24,9 +25,9 @@ const WRITTEN: [&str; 2] = [RestShape::NAME, ViscousMemory::NAME];
 impl Simulation {
     /// Changes parameters from the next step on, by their places in the scene and in the words of `--set`:
     /// `"materials.liver.neo_hookean=Young(young: 5e3, poisson: 0.45)"`, `"loads[0].acceleration=(0, 0, -3.7)"`. They
-    /// are those of elastic laws, `fibres` and `exponential_fibres` (not their directions), `per_copy` of bodies, and
-    /// what loads are: all in the scene's units. All of it is read and checked as the scene was, and the stable step is
-    /// found anew where materials change, for some tens of steps' time.
+    /// are those of elastic laws, `fibres` and `exponential_fibres` (not their directions), `per_copy` of bodies of the
+    /// same, and what loads are: all in the scene's units. All of it is read and checked as the scene was, and the
+    /// stable step is found anew where materials change, for some tens of steps' time.
     ///
     /// Snapshots hold what was changed, and going back takes it back. Nodes stay where they are: a load that changes
     /// acts in full from the next step on, and what elements hold more or less afterwards counts as if they had begun
@@ -184,9 +185,8 @@ impl Simulation {
 /// becomes that of the present law.
 fn remember_as_before(world: &mut World, entity: Entity, before: &BlockLaw<f64>) {
     let Some(now) = world.get::<BlockLaw<f64>>(entity).cloned() else { return };
-    let times = |sign: f64| {
-        [&now.prony, &now.volumetric].map(|terms| terms.iter().map(|term| sign * term.aim).collect::<Vec<f64>>())
-    };
-    add_to_memory_by(world, entity, before, &times(-1.0));
-    add_to_memory_by(world, entity, &now, &times(1.0));
+    // what each term remembers is the same for both
+    let times = |law: &BlockLaw<f64>, sign: f64| law.with_terms(|_, _, term| PronyTerm::adding(sign * term.aim));
+    add_to_memory_by(world, entity, times(before, -1.0));
+    add_to_memory_by(world, entity, times(&now, 1.0));
 }

@@ -9,25 +9,25 @@
 //! all of K, and elements' own bounds may take their own β, for K_e ≤ ω_e² M_e.
 
 use super::frequency::Largest;
-use crate::assembly::{damped, damping_time};
+use crate::assembly::{damped, damping_times};
 use crate::components::Block;
 use bevy_ecs::prelude::*;
 
-/// The least and the largest β of all blocks (s).
-fn damping_times(world: &mut World) -> (f64, f64) {
-    let blocks: Vec<Block> = world.query::<&Block>().iter(world).cloned().collect();
-    let times = blocks.iter().map(|block| damping_time(world, block));
+/// The least and the largest β of all elements (s).
+fn ends_of_damping_times(world: &mut World) -> (f64, f64) {
+    let blocks: Vec<Entity> = world.query_filtered::<Entity, With<Block>>().iter(world).collect();
+    let times = blocks.iter().flat_map(|&block| damping_times(world, block));
     times.fold((f64::INFINITY, 0.0), |(least, most), time| (least.min(time), most.max(time)))
 }
 
 /// ω² (1/s²) that without damping would allow the step that ω² allows with it, in the most damped material.
 pub(super) fn square_with_damping(square: f64, world: &mut World) -> f64 {
-    damped(square, damping_times(world).1)
+    damped(square, ends_of_damping_times(world).1)
 }
 
 /// The same of the largest ω² of all as far as it is known: at most by the most, at least by the least damped material.
 pub(super) fn with_damping(found: Largest, world: &mut World) -> Largest {
-    let (least, most) = damping_times(world);
+    let (least, most) = ends_of_damping_times(world);
     Largest { at_least: damped(found.at_least, least), at_most: damped(found.at_most, most), ..found }
 }
 
@@ -39,5 +39,5 @@ pub(super) fn ratio_with_damping(ratio: f64, is_damped: bool) -> f64 {
 
 /// Whether any block is damped so.
 pub(super) fn is_damped(world: &mut World) -> bool {
-    damping_times(world).1 > 0.0
+    ends_of_damping_times(world).1 > 0.0
 }

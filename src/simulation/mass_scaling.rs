@@ -173,8 +173,7 @@ fn spread(world: &World, entity: Entity, nodes: &mut [f64]) -> f64 {
 /// Real mass of an element (kg), as the world's precision has it.
 fn mass_of(world: &World, entity: Entity, row: usize) -> f64 {
     let (Some(block), Some(shape)) = (world.get::<Block>(entity), world.get::<RestShape>(entity)) else { return 0.0 };
-    let density = world.get::<Density>(block.material).map_or(0.0, |density| density.0);
-    density * rest_volume(block, row, shape)
+    ElementInertia::of(world, entity).of_row(row)[0] * rest_volume(block, row, shape)
 }
 
 /// The mass that an element's nodes move with for it (kg), and how many times its real one that is; `None` of one that

@@ -3,14 +3,15 @@
 use super::block_forces::{BlockForces, widened};
 use super::{Job, Simulation};
 use crate::assembly::step_of;
+use crate::backend::block_kernel::{law_numbers, terms_uniform};
 use crate::backend::cpu::{BlockLaw, Cpu};
 use crate::backend::device::{Device, bring_to_host, send_to_device};
-use crate::backend::kernel::Uniform;
 use crate::components::*;
 use crate::error::Error;
 use crate::materials::PronyTerm;
 use crate::observation::Observer;
 use bevy_ecs::prelude::*;
+use std::sync::Arc;
 
 /// What is read and written beside increments: where viscous memories follow, and where elements go by time.
 const READ: [&str; 5] = [Displacement::NAME, RestShape::NAME, ViscousMemory::NAME, Alive::NAME, RemovalStep::NAME];
@@ -73,23 +74,25 @@ fn scale_increments(counted: &[ColumnAccess], factor: f64, world: &mut World) {
 /// The recursions of viscous materials take the coefficients of the new step. The memory of the exact one, H − φS,
 /// holds a coefficient of the old step too: what it stands for stays the same.
 fn relax_on(world: &mut World, clock: &Clock) -> Result<(), Error> {
-    for (entity, [terms, volumetric]) in coefficients(world, clock) {
-        let Some(law) = world.get::<BlockLaw<f64>>(entity) else { continue };
-        let change = |(now, before): (&PronyTerm<f64>, &PronyTerm<f64>)| now.aim - before.aim;
-        let changes = [
-            terms.iter().zip(&law.prony).map(change).collect::<Vec<f64>>(),
-            volumetric.iter().zip(&law.volumetric).map(change).collect(),
-        ];
-        add_to_memory(world, entity, &changes);
-        take_coefficients(world, entity, terms, volumetric)?;
+    for (entity, law) in laws_of_step(world, clock) {
+        let Some(before) = world.get::<BlockLaw<f64>>(entity).cloned() else { continue };
+        let aim = |law: &BlockLaw<f64>, copy: Option<usize>, place: usize| {
+            let of_copy =
+                copy.zip(law.copies.as_ref()).and_then(|(copy, copies)| copies.of_copy[copy].terms.get(place));
+            let of_all = || law.prony.iter().chain(&law.volumetric).nth(place);
+            of_copy.or_else(of_all).map_or(0.0, |term| term.aim)
+        };
+        let changes = before.with_terms(|copy, place, term| PronyTerm::adding(aim(&law, copy, place) - term.aim));
+        add_to_memory_by(world, entity, changes);
+        take_law(world, entity, law)?;
     }
     Ok(())
 }
 
 /// The same where memories already belong to the step, as those of a snapshot do.
 pub(super) fn relax_as(world: &mut World, clock: &Clock) -> Result<(), Error> {
-    for (entity, [terms, volumetric]) in coefficients(world, clock) {
-        take_coefficients(world, entity, terms, volumetric)?;
+    for (entity, law) in laws_of_step(world, clock) {
+        take_law(world, entity, law)?;
     }
     Ok(())
 }
@@ -111,34 +114,33 @@ fn remember(world: &mut World, times: fn(&PronyTerm<f64>) -> f64) {
     let blocks: Vec<Entity> = world.query_filtered::<Entity, With<ViscousMemory>>().iter(world).collect();
     for entity in blocks {
         let Some(law) = world.get::<BlockLaw<f64>>(entity) else { continue };
-        let times = [&law.prony, &law.volumetric].map(|terms| terms.iter().map(times).collect::<Vec<f64>>());
-        add_to_memory(world, entity, &times);
+        let adding = law.with_terms(|_, _, term| PronyTerm::adding(times(term)));
+        add_to_memory_by(world, entity, adding);
     }
 }
 
-/// Viscous blocks, with the coefficients of their terms and of their volumetric terms for a step.
-fn coefficients(world: &mut World, clock: &Clock) -> Vec<(Entity, [Vec<PronyTerm<f64>>; 2])> {
+/// Viscous blocks, with their laws for a step of the clock's length.
+fn laws_of_step(world: &mut World, clock: &Clock) -> Vec<(Entity, BlockLaw<f64>)> {
     let blocks: Vec<Entity> = world.query_filtered::<Entity, With<ViscousMemory>>().iter(world).collect();
     let of_block = |entity: Entity| {
-        let material = world.get::<Block>(entity)?.material;
-        Some((entity, memory_terms(world, material, clock)))
+        let [prony, volumetric] = ElementMemory::of(world, world.get::<Block>(entity)?.material).terms(clock);
+        let mut law = BlockLaw { prony, volumetric, ..world.get::<BlockLaw<f64>>(entity)?.clone() };
+        if let (Some(copies), Some(memories)) = (&law.copies, world.get::<PerCopyMemory>(entity)) {
+            law.copies = Some(Arc::new(copies.with_memories(&memories.0, clock)));
+        }
+        Some((entity, law))
     };
     blocks.into_iter().filter_map(of_block).collect()
 }
 
-fn take_coefficients(
-    world: &mut World,
-    entity: Entity,
-    terms: Vec<PronyTerm<f64>>,
-    volumetric: Vec<PronyTerm<f64>>,
-) -> Result<(), Error> {
-    let Some(mut law) = world.get::<BlockLaw<f64>>(entity).cloned() else { return Ok(()) };
-    (law.prony, law.volumetric) = (terms, volumetric);
+/// Gives a block the law of another step, here and on a device.
+fn take_law(world: &mut World, entity: Entity, law: BlockLaw<f64>) -> Result<(), Error> {
     let label = world.get::<Label>(entity).map(|label| label.0.clone()).unwrap_or_default();
     let rounded = law.rounded::<f32>();
-    let bytes: Vec<u8> = rounded.prony.iter().chain(&rounded.volumetric).flat_map(Uniform::bytes).collect();
     if let Some(mut device) = world.get_resource_mut::<Device>() {
-        device.rewrite(&format!("prony of {label}"), &bytes)?;
+        for (label, bytes) in terms_uniform(&rounded, &label).into_iter().chain(law_numbers(&rounded, &label)) {
+            device.rewrite(&label, &bytes)?;
+        }
     }
     let mut entity = world.entity_mut(entity);
     if entity.contains::<BlockLaw<f32>>() {
@@ -148,26 +150,12 @@ fn take_coefficients(
     Ok(())
 }
 
-/// Adds so many times the present stress to a block's memory.
-fn add_to_memory(world: &mut World, entity: Entity, times: &[Vec<f64>; 2]) {
-    if let Some(law) = world.get::<BlockLaw<f64>>(entity).cloned() {
-        add_to_memory_by(world, entity, &law, times);
-    }
-}
-
-/// The same of the stress that a law has: by the block's own kernel, with terms that do just that.
-pub(super) fn add_to_memory_by(
-    world: &mut World,
-    entity: Entity,
-    law: &BlockLaw<f64>,
-    [terms, volumetric]: &[Vec<f64>; 2],
-) {
+/// Adds to a block's memory what a law adds whose terms do just that, by the block's own kernel.
+pub(super) fn add_to_memory_by(world: &mut World, entity: Entity, adding: BlockLaw<f64>) {
     if world.get::<ViscousMemory>(entity).is_none() {
         return;
     }
-    let adding = |times: &Vec<f64>| times.iter().map(|&times| PronyTerm::adding(times)).collect();
-    let adds = |_: &BlockLaw<f64>| BlockLaw { prony: adding(terms), volumetric: adding(volumetric), ..law.clone() };
-    let added = BlockForces::of(world, entity, adds).and_then(|mut block| {
+    let added = BlockForces::of(world, entity, |_| adding.clone()).and_then(|mut block| {
         let body = block.block.body;
         let displacement = widened(world.get::<Displacement>(body)?);
         let mut unused = vec![0.0; world.get::<ElementForce>(body)?.len()];

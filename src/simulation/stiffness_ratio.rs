@@ -163,7 +163,12 @@ fn extremes(law: &BlockLaw<f64>) -> Vec<BlockLaw<f64>> {
     let numbers = |copy: usize| {
         let of_copy = &copies.of_copy[copy];
         let shear = of_copy.elastic.small_strain_moduli()[0];
-        of_copy.numbers().into_iter().flat_map(|number| [number, number / shear]).collect::<Vec<f64>>()
+        of_copy
+            .numbers()
+            .into_iter()
+            .take(copies.of_law)
+            .flat_map(|number| [number, number / shear])
+            .collect::<Vec<f64>>()
     };
     let of_each: Vec<Vec<f64>> = (0..copies.of_copy.len()).map(numbers).collect();
     let mut chosen = BTreeSet::new();
@@ -173,7 +178,7 @@ fn extremes(law: &BlockLaw<f64>) -> Vec<BlockLaw<f64>> {
         chosen.extend((0..of_each.len()).max_by(by));
     }
     let of_copy = |copy: usize| {
-        let LawParameters { elastic, fibres, exponential } = copies.of_copy[copy].clone();
+        let LawParameters { elastic, fibres, exponential, .. } = copies.of_copy[copy].clone();
         let directions = law.exponential.iter().map(|(_, from)| *from);
         BlockLaw {
             elastic,

@@ -5,6 +5,7 @@ use super::block_forces::BlockForces;
 use crate::backend::cpu::{BlockLaw, Cpu};
 use crate::components::*;
 use crate::elements::node_count;
+use crate::materials::PronyTerm;
 use crate::math::lane_place;
 use crate::systems::sum_corners;
 use bevy_ecs::prelude::*;
@@ -90,13 +91,16 @@ impl<'w> Tangent<'w> {
 /// A law as it answers to what is sudden: stresses relaxed so far are there, nothing relaxes further, and fibres that
 /// could be pulled taut at any moment push back as well.
 pub(super) fn at_an_instant(law: &BlockLaw<f64>) -> BlockLaw<f64> {
-    let mut law = law.clone();
-    // a term without a rate is relaxed for good: that of a static analysis
-    for term in law.prony.iter_mut().chain(&mut law.volumetric).filter(|term| term.rate > 0.0) {
-        // what damps is no force of a state at rest
-        let memory = if term.is_damping() { 0.0 } else { term.memory };
-        (term.stress, term.memory, term.rate) = (0.0, memory, 0.0);
-    }
+    let mut law = law.with_terms(|_, _, term| {
+        if term.rate > 0.0 {
+            // what damps is no force of a state at rest
+            let memory = if term.is_damping() { 0.0 } else { term.memory };
+            PronyTerm { stress: 0.0, memory, rate: 0.0, aim: term.aim }
+        } else {
+            // relaxed for good: that of a static analysis
+            *term
+        }
+    });
     law.fibres.iter_mut().for_each(|(fibres, _)| fibres.tension_only = 0.0);
     law.exponential.iter_mut().for_each(|(family, _)| family.tension_only = 0.0);
     law

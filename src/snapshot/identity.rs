@@ -125,9 +125,10 @@ fn sets_in_use(world: &mut World) -> u64 {
         note("prescribed", c.signal, &[&c.axes.to_le_bytes(), bytes(&c.rows), bytes(&c.arms)]);
     });
     world.query::<&SceneLoad>().iter(world).for_each(|load| match &load.on {
-        LoadedRows::All => {}
+        LoadedRows::All(factors) if factors.is_empty() => {}
+        LoadedRows::All(factors) => note(load.name, load.signal, &[bytes(factors)]),
         LoadedRows::Nodes(nodes) => note(load.name, load.signal, &[bytes(&nodes.rows), bytes(&nodes.factors)]),
-        LoadedRows::Faces(faces) => note(load.name, load.signal, &[bytes(&faces.faces)]),
+        LoadedRows::Faces(faces) => note(load.name, load.signal, &[bytes(&faces.faces), bytes(&faces.factors)]),
     });
     world.query::<&OwnLoad>().iter(world).for_each(|l| {
         note("system", l.signal, &[bytes(l.rows.as_deref().unwrap_or_default())]);

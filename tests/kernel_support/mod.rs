@@ -30,7 +30,7 @@ pub const SUPPORT: &[(&str, &str)] = &[
     ("invariants", "stresses of an energy's slopes, in laws"),
     ("law_of_all", "elements of one law, where others differ from copy to copy"),
     ("energy", "elastic energy, where elements can go"),
-    ("force_factor", "forces that differ from copy to copy"),
+    ("load_factor", "loads that differ from copy to copy"),
     ("external_force", "sums of loads, between kernels"),
     ("external_force_local", "sums of loads, within one"),
     ("internal_force", "forces of elements, between kernels"),

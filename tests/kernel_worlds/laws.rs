@@ -28,6 +28,9 @@ pub const VARIED: [(&str, &str); 8] = [
     (LAWS[9], "\"tissue.corotational.shear\": Values([700, 1500])"),
 ];
 
+/// A number of viscosity that two copies may have.
+pub const VARIED_TERM: &str = "\"tissue.prony.terms[0].alpha\": Values([0.4, 0.2])";
+
 /// An energy whose terms of first order cancel as it is written.
 pub const GROWING: &str = "law: (energy: \"mu/2*I1bar_minus_3 + kappa/b^2*(exp(b*J_minus_1) - b*J_minus_1)\", parameters: {\"mu\": 1034, \"b\": 3, \"kappa\": 10000})";
 

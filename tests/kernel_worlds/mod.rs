@@ -164,7 +164,10 @@ impl Effects {
         let damping = if self.damping { "damping: 20," } else { "" };
         let inversion = self.inversion.map_or(String::new(), |word| format!("inversion: {word},"));
         let (copies, per_copy) = match self.copies {
-            true => ("copies: 2, apart: (0.001, 0, 0),", "per_copy: Linear(0.5, -2),"),
+            true => (
+                "copies: 2, apart: (0.001, 0, 0),",
+                "per_copy: Axes(x: Linear(0.5, -2), y: Values([1, 3]), z: Uniform(from: 1, to: 2)),",
+            ),
             false => ("", ""),
         };
         let mut varied: Vec<&str> = self.varied.into_iter().collect();
@@ -175,16 +178,17 @@ impl Effects {
             varied.push("\"tissue.exponential_fibres[0].k1\": Values([900, 500])");
             varied.push("\"tissue.exponential_fibres[1].k2\": Values([0.1, 0.4])");
         }
+        varied.extend((self.varied.is_some() && self.prony > 0).then_some(laws::VARIED_TERM));
         let varied = varied.join(", ");
         let both = |text: &str| {
             ["tets", "hexes"].map(|body| text.replace("BODY", body).replace("PER_COPY", per_copy)).concat()
         };
         let loads = if self.loads {
             both(
-                "Gravity(body: \"BODY\", acceleration: (1, -2, -9.81)),
+                "Gravity(body: \"BODY\", PER_COPY acceleration: (1, -2, -9.81)),
                  NodalForce(body: \"BODY\", on: Sphere(center: (0, 0, 0.05), radius: 0.03), PER_COPY force: (0.001, 0.002, -0.003)),
                  Pressure(body: \"BODY\", on: All, pressure: 120),
-                 Traction(body: \"BODY\", on: Surface(normal: (0, 0, 1), within: 70), traction: (5, -7, 11)),",
+                 Traction(body: \"BODY\", on: Surface(normal: (0, 0, 1), within: 70), PER_COPY traction: (5, -7, 11)),",
             )
         } else {
             String::new()

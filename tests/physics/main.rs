@@ -13,6 +13,7 @@ mod columns;
 mod configurations;
 mod conservation;
 mod copies;
+mod copies_differ;
 mod determinism;
 mod edge_frames;
 mod elastica;

@@ -15,6 +15,7 @@
 //! `docs/bevy.md` tells how it is used. Two worlds: sinew's own stays within [`SoftSimulation`], whose columns and
 //! schedule are the engine's.
 
+mod gizmos;
 mod grab;
 mod mesh;
 mod prepare;
@@ -22,6 +23,7 @@ mod scene;
 mod simulation;
 mod step;
 
+pub use gizmos::{SinewGizmosPlugin, SoftGizmos};
 pub use grab::SoftGrab;
 pub use scene::{NotLoaded, SceneLoader, SceneText};
 pub use simulation::{

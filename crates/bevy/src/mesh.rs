@@ -1,4 +1,4 @@
-//! Bodies as meshes: their surface, moved along.
+//! Bodies as meshes: their surface, or the skin that they carry, moved along.
 
 use crate::simulation::*;
 use bevy_asset::{Assets, RenderAssetUsages};
@@ -6,16 +6,21 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_mesh::{Indices, Mesh, Mesh3d, PrimitiveTopology, VertexAttributeValues};
 use bevy_time::{Fixed, Time};
+use sinew::glam::DVec3;
 use sinew::{Error, Simulation};
 
-/// The surface of a body in the last two ticks.
+/// What is drawn of a body in the last two ticks: its skin if it has one, else its surface.
 #[derive(Component)]
 pub(crate) struct BodyShape {
-    /// Where its nodes were (m), in the author's order.
+    /// Whether it is its skin.
+    of_skin: bool,
+    /// Where its points were (m): nodes in the author's order, or points of its skin.
     before: Vec<Vec3>,
     /// Where they are.
     now: Vec<Vec3>,
-    /// The node of each vertex.
+    /// Texture coordinates of points, from the top left corner of the picture; nothing where there are none.
+    texture: Vec<[f32; 2]>,
+    /// The point of each vertex.
     nodes: Vec<u32>,
     /// Triangles of vertices.
     triangles: Vec<u32>,
@@ -30,22 +35,25 @@ pub(crate) struct BodyShape {
 impl BodyShape {
     /// That of a body as it is.
     pub fn of(simulation: &mut Simulation, body: &str) -> Result<Self, Error> {
-        let now = positions(simulation, body)?;
+        let of_skin = simulation.scene().bodies.get(body).is_some_and(|body| body.skin.is_some());
         let left = simulation.elements_left(body)?;
+        let Points { places, triangles, texture } = Points::of(simulation, body, of_skin, true)?;
         let mut shape = Self {
-            before: now.clone(),
-            now,
+            of_skin,
+            before: places.clone(),
+            now: places,
+            texture,
             nodes: Vec::new(),
             triangles: Vec::new(),
             left,
             new_triangles: false,
             at_rest: false,
         };
-        shape.take_triangles(&simulation.surface_triangles(body)?);
+        shape.take_triangles(&triangles);
         Ok(shape)
     }
 
-    /// Vertices are nodes of the surface, each once.
+    /// Vertices are points of triangles, each once.
     fn take_triangles(&mut self, triangles: &[[u32; 3]]) {
         let mut vertices = vec![u32::MAX; self.now.len()];
         self.nodes.clear();
@@ -62,12 +70,13 @@ impl BodyShape {
 
     /// Goes on to the body as it is now; whether elements have gone or come back.
     pub fn update(&mut self, simulation: &mut Simulation, body: &str) -> Result<bool, Error> {
-        self.before = std::mem::replace(&mut self.now, positions(simulation, body)?);
         let left = simulation.elements_left(body)?;
         let others = left != self.left;
+        let Points { places, triangles, .. } = Points::of(simulation, body, self.of_skin, others)?;
+        self.before = std::mem::replace(&mut self.now, places);
         if others {
             self.left = left;
-            self.take_triangles(&simulation.surface_triangles(body)?);
+            self.take_triangles(&triangles);
             self.new_triangles = true;
         }
         self.at_rest = false;
@@ -91,10 +100,15 @@ impl BodyShape {
     /// The mesh.
     pub fn mesh(&self) -> Mesh {
         let positions: Vec<[f32; 3]> = self.vertices(1.0).collect();
-        Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+        let mut mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
             .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
             .with_inserted_indices(Indices::U32(self.triangles.clone()))
-            .with_computed_area_weighted_normals()
+            .with_computed_area_weighted_normals();
+        let texture: Vec<[f32; 2]> = self.nodes.iter().filter_map(|&n| self.texture.get(n as usize).copied()).collect();
+        if !self.texture.is_empty() && texture.len() == self.nodes.len() {
+            mesh.insert_attribute(Mesh::ATTRIBUTE_UV_0, texture);
+        }
+        mesh
     }
 
     /// Moves the vertices of a mesh, in place where they are as many.
@@ -115,9 +129,27 @@ impl BodyShape {
     }
 }
 
-/// Where a body's nodes are (m), in the author's order.
-fn positions(simulation: &mut Simulation, body: &str) -> Result<Vec<Vec3>, Error> {
-    Ok(simulation.positions(body)?.into_iter().map(|place| place.as_vec3()).collect())
+/// What is drawn of a body as it is now.
+struct Points {
+    places: Vec<Vec3>,
+    /// By points; nothing where nobody asks for them.
+    triangles: Vec<[u32; 3]>,
+    texture: Vec<[f32; 2]>,
+}
+
+impl Points {
+    /// Of its skin, or of its nodes in the author's order.
+    fn of(simulation: &mut Simulation, body: &str, of_skin: bool, triangles: bool) -> Result<Self, Error> {
+        let places = |places: Vec<DVec3>| places.into_iter().map(|place| place.as_vec3()).collect();
+        if of_skin {
+            let skin = simulation.skin(body)?;
+            // v goes upwards in meshes of files, and downwards in Bevy
+            let texture = skin.texture.into_iter().map(|[u, v]| [u, 1.0 - v]).collect();
+            return Ok(Self { places: places(skin.points), triangles: skin.triangles, texture });
+        }
+        let triangles = if triangles { simulation.surface_triangles(body)? } else { Vec::new() };
+        Ok(Self { places: places(simulation.positions(body)?), triangles, texture: Vec::new() })
+    }
 }
 
 /// Writes meshes for this frame: between the last two ticks, as far as the frame is between them.

@@ -97,7 +97,8 @@ impl DerefMut for SoftSimulation {
     }
 }
 
-/// A body of a scene, on a child of the scene's entity, beside its `Mesh3d`. Give it a material when it appears:
+/// A body of a scene, on a child of the scene's entity, beside its `Mesh3d`: its skin, with texture coordinates if the
+/// skin's file has some, or its surface. Give it a material when it appears:
 /// `Query<Entity, Added<SoftBody>>`.
 #[derive(Component, Clone, Debug, PartialEq, Eq)]
 pub struct SoftBody {

@@ -21,7 +21,7 @@ pub fn command(arguments: &SweepArguments) -> Outcome {
         stop: &interrupt::is_asked,
     };
     let outcome = sweep.run(&how, |row| {
-        let values = places.iter().zip(&row.values).map(|(place, value)| format!("{place}={value}"));
+        let values = places.iter().filter_map(|place| Some(format!("{place}={}", row.values.get(*place)?)));
         let values = values.collect::<Vec<_>>().join(" ");
         let took = quantity(row.seconds, "s");
         terminal::detail(&format!("variant {}: {values}: {} after {took}\n", row.number, row.ended));

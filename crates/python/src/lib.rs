@@ -15,6 +15,7 @@ mod scene;
 mod simulation;
 mod snapshot;
 mod stepping;
+mod sweep;
 mod values;
 mod view;
 
@@ -31,5 +32,8 @@ fn _sinew(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<grab::Pick>()?;
     module.add_class::<grab::Grab>()?;
     module.add_class::<snapshot::Snapshot>()?;
-    module.add_class::<picture::Picture>()
+    module.add_class::<picture::Picture>()?;
+    module.add_class::<sweep::SweepResults>()?;
+    module.add_function(wrap_pyfunction!(sweep::latin_hypercube_rows, module)?)?;
+    module.add_function(wrap_pyfunction!(sweep::read_sweep_file, module)?)
 }

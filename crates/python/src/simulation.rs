@@ -78,7 +78,8 @@ impl Simulation {
     }
 }
 
-fn options(backend: &str, precision: &str, threads: usize, grabs: bool, resets: bool) -> PyResult<Options> {
+/// The engine's, of those that Python names.
+pub fn options(backend: &str, precision: &str, threads: usize, grabs: bool, resets: bool) -> PyResult<Options> {
     let wrong = |what: &str, found: &str, allowed: &str| {
         PyValueError::new_err(format!("{what} {found:?} is not known; allowed: {allowed}"))
     };

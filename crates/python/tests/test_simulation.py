@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 import sinew
 
-from conftest import BLOCK
+from conftest import BLOCK, PULL
 
 
 def test_steps_and_times(simulation: sinew.Simulation) -> None:
@@ -248,5 +248,16 @@ def test_arrays_are_numbers_a_copy() -> None:
     soft, stiff = body.by_copy(body.displacements())[:, :, 0].mean(axis=1)
     assert soft > stiff > 0
     for wrong in (stiffness[None], [1.0, float("nan")]):
-        with pytest.raises(ValueError, match="one finite number a copy"):
+        with pytest.raises(ValueError, match="one finite number or vector a copy"):
             sinew.per_copy(wrong)
+
+
+def test_arrays_are_vectors_a_copy() -> None:
+    ways = np.array([[0.0, 2.0, 0.0], [3.0, 0.0, 0.0]])
+    gravity = f'Gravity(body: "block", acceleration: (1, 1, 1), per_copy: {sinew.per_copy(ways)})'
+    text = BLOCK.replace('material: "tissue")', 'material: "tissue", copies: 2)').replace(PULL, gravity)
+    simulation = sinew.Simulation(sinew.Scene.from_text(text), backend="cpu")
+    simulation.advance_to(0.01)
+    body = simulation.body("block")
+    first, second = body.by_copy(body.displacements()).mean(axis=1)
+    assert first[1] > 10 * abs(first[0]) and second[0] > 10 * abs(second[1]) > 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import concurrent.futures
 import json
 import multiprocessing
+import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ import pytest
 import sinew
 
 import kept
-from conftest import BLOCK, PULL
+from conftest import BLOCK, PULL, ROOT
 
 # held below, under its weight
 SAGGING = BLOCK.replace(PULL, "Gravity(acceleration: (0, 0, -9.81))")
@@ -40,7 +41,7 @@ def same(one: Sequence[sinew.Row], other: Sequence[sinew.Row]) -> bool:
 
 def test_rows_are_what_single_runs_give(sagging: sinew.Scene) -> None:
     rows = sinew.sweep(sagging, TABLE, keep=kept.shape)
-    assert [row.number for row in rows] == list(range(9)) and {row.ended for row in rows} == {"finished"}
+    assert [row.number for row in rows] == list(range(9)) and {row.ended for row in rows} == {"Finished"}
     for row, values in zip(rows, TABLE, strict=True):
         simulation = sinew.Simulation(sagging.with_values(values), backend="cpu", threads=1)
         simulation.finish()
@@ -60,31 +61,81 @@ def test_a_variant_that_breaks_down_is_a_row(sagging: sinew.Scene) -> None:
     crushed = {"loads[0].acceleration": (0, 0, -3000)}
     table: list[dict[str, Any]] = [{YOUNG: 3000}, crushed, {YOUNG: -1}, {YOUNG: 6000}]
     rows = sinew.sweep(sagging, table, keep=["top"], at=[0.01, 0.1])
-    assert [row.ended for row in rows] == ["finished", "Unstable", "SceneError", "finished"]
+    assert [row.ended for row in rows] == ["Finished", "Unstable", "SceneError", "Finished"]
     assert "broke down" in str(rows[1].error) and 0 < rows[1].time < 0.1 and "young" in str(rows[2].error)
     assert len(rows[1].kept.get("top", [])) < 2 == len(rows[0].kept["top"])
 
 
 def test_nothing_runs_twice(sagging: sinew.Scene, tmp_path: Path) -> None:
-    out = tmp_path / "rows.jsonl"
+    out = tmp_path / "manifest.jsonl"
     table: list[dict[str, Any]] = [*TABLE[:4], {"loads[0].acceleration": (0, 0, -3000)}]
-    first = sinew.sweep(sagging, table, keep=kept.shape, out=out)
+    first = sinew.sweep(sagging, table, keep=kept.shape, out=tmp_path)
     lines = out.read_text().splitlines()
     assert len(lines) == 5
-    assert same(sinew.sweep(sagging, table, keep=kept.shape, out=out), first)
+    assert same(sinew.sweep(sagging, table, keep=kept.shape, out=tmp_path), first)
     assert out.read_text().splitlines() == lines
     # of a sweep that was cut off in the middle of a line, what is missing runs
     out.write_text("\n".join(lines[:3]) + "\n" + lines[3][:50])
-    assert same(sinew.sweep(sagging, table, keep=kept.shape, out=out), first)
+    assert same(sinew.sweep(sagging, table, keep=kept.shape, out=tmp_path), first)
     again = out.read_text().splitlines()
     assert len(again) == 6 and again[:3] == lines[:3]
     # of another precision, other values, other things kept, nothing counts
-    sinew.sweep(sagging, table[:1], keep=kept.shape, out=out, precision="f64")
-    sinew.sweep(sagging, [{YOUNG: 3001}], keep=kept.shape, out=out)
-    sinew.sweep(sagging, table[:1], keep=["top"], out=out)
+    sinew.sweep(sagging, table[:1], keep=kept.shape, out=tmp_path, precision="f64")
+    sinew.sweep(sagging, [{YOUNG: 3001}], keep=kept.shape, out=tmp_path)
+    sinew.sweep(sagging, table[:1], keep=["top"], out=tmp_path)
     assert len(out.read_text().splitlines()) == 9
     known = json.loads(lines[0])
-    assert {"key", "version", "number", "values", "ended", "error", "time", "kept", "seconds"} == set(known)
+    assert {"key", "number", "values", "ended", "error", "time", "kept", "seconds"} == set(known)
+
+
+SWEEP = """(
+    scene: "sagging.ron",
+    variants: Grid([("materials.tissue.neo_hookean.young", [3000, 6000.5]), ("materials.tissue.damping", [5, 7.5, 20]),
+        ("loads[0].acceleration", ["(0, 0, -9.81)", "(0, 0, -3000)"])]),
+    keep: ["top", "ground"],
+    at: [0.05, 0.1],
+)"""
+
+
+def test_the_command_and_python_go_on_with_each_other(tmp_path: Path) -> None:
+    command = ROOT / "target/debug/sinew"
+    if not command.exists():
+        pytest.skip("the command has not been built: cargo build")
+    (tmp_path / "sagging.ron").write_text(SAGGING)
+    file = tmp_path / "sweep.ron"
+    file.write_text(SWEEP)
+    a_sweep = sinew.read_sweep(file)
+
+    def by_the_command(out: Path) -> str:
+        words = [str(command), "sweep", str(file), "-o", str(out)]
+        told = subprocess.run(words, check=True, capture_output=True, text=True, cwd=tmp_path)
+        return str(told.stdout)
+
+    def half(out: Path) -> None:
+        lines = (out / "manifest.jsonl").read_text().splitlines()
+        (out / "manifest.jsonl").write_text("\n".join(lines[:5]) + "\n")
+
+    first, second = tmp_path / "first", tmp_path / "second"
+    assert "already" not in by_the_command(first)
+    whole = (first / "rows.csv").read_bytes()
+    rows = sinew.sweep(**a_sweep, out=second)
+    assert (second / "rows.csv").read_bytes() == whole
+    assert [row.ended for row in rows] == ["Finished", "Unstable"] * 6 and rows[0].kept["top"].shape == (2, 3)
+    # what one has begun the other goes on with
+    half(first)
+    assert same(sinew.sweep(**a_sweep, out=first), rows)
+    assert len((first / "manifest.jsonl").read_text().splitlines()) == 12
+    half(second)
+    assert "5 of them there already" in by_the_command(second)
+    assert (first / "rows.csv").read_bytes() == (second / "rows.csv").read_bytes() == whole
+    # the same rows of the same seed
+    file.write_text(
+        'LatinHypercube(count: 7, seed: 3, places: [("a", (0, 1)), ("b", (10, 30))])'.join(
+            ['(scene: "sagging.ron", variants: ', ', keep: ["top"])']
+        )
+    )
+    drawn = sinew.read_sweep(file)["table"]
+    assert drawn == sinew.latin_hypercube({"a": (0, 1), "b": (10, 30)}, 7, seed=3)
 
 
 def test_parts_are_the_whole(sagging: sinew.Scene) -> None:
@@ -106,7 +157,7 @@ def test_processes_give_the_same_bits(sagging: sinew.Scene, pack: float) -> None
 
 def test_mistakes_of_ones_own_end_it(sagging: sinew.Scene, tmp_path: Path) -> None:
     with pytest.raises(ZeroDivisionError, match="at 0.0999"):
-        sinew.sweep(sagging, TABLE, keep=kept.wrong, out=tmp_path / "rows.jsonl")
+        sinew.sweep(sagging, TABLE, keep=kept.wrong, out=tmp_path)
     with pytest.raises(TypeError, match="cannot be kept"):
         sinew.sweep(sagging, TABLE[:1], keep=lambda simulation: {"simulation": simulation})
 

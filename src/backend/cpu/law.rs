@@ -62,6 +62,29 @@ impl<T: Scalar> BlockLaw<T> {
         })
     }
 
+    /// The terms of an element: of the isochoric stress, and of the pressure.
+    pub fn terms_of(&self, row: usize) -> [&[PronyTerm<T>]; 2] {
+        match self.copies.as_ref().filter(|copies| copies.have_terms()) {
+            Some(copies) => copies.of_row(row).terms.split_at(self.prony.len()).into(),
+            None => [&self.prony, &self.volumetric],
+        }
+    }
+
+    /// The same law with other terms, of the block and of each copy that has its own: each made of the number of its
+    /// copy, none for the block's, its place among all terms and the term there.
+    pub fn with_terms(&self, term: impl Fn(Option<usize>, usize, &PronyTerm<T>) -> PronyTerm<T>) -> Self {
+        let mut law = self.clone();
+        let own = law.prony.iter_mut().chain(&mut law.volumetric).enumerate();
+        own.for_each(|(place, own)| *own = term(None, place, own));
+        if let Some(copies) = law.copies.as_ref().filter(|copies| copies.have_terms()) {
+            let of_copy = |copy: usize, terms: &[PronyTerm<T>]| {
+                terms.iter().enumerate().map(|(place, own)| term(Some(copy), place, own)).collect()
+            };
+            law.copies = Some(Arc::new(copies.with_terms(of_copy)));
+        }
+        law
+    }
+
     /// Whether it is its elastic law and nothing else.
     pub fn is_elastic(&self) -> bool {
         let fibres = self.fibres.is_some() || !self.exponential.is_empty();
@@ -70,9 +93,7 @@ impl<T: Scalar> BlockLaw<T> {
 
     /// The same law with a memory that its kernel leaves as it is, as long as stresses are finite.
     pub fn with_still_memory(&self) -> Self {
-        let mut law = self.clone();
-        law.prony.iter_mut().chain(&mut law.volumetric).for_each(|term| term.rate = T::default());
-        law
+        self.with_terms(|_, _, term| PronyTerm { rate: T::default(), ..*term })
     }
 
     /// Rounds to another precision.

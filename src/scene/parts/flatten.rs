@@ -1,9 +1,9 @@
 //! A scene without parts: what they hold, placed, under the names that it has in the scene.
 
 use super::placement::Placement;
-use crate::scene::copied_material::split;
+use crate::scene::copied_material::{Part as Of, split};
 use crate::scene::schema::{
-    Attachment, Constraint, Contact, Curve, LoadPartsMut, Part, PartScene, Quantity, Scene, When,
+    Attachment, Constraint, Contact, Curve, Load, LoadPartsMut, Part, PartScene, PerCopy, Quantity, Scene, When,
 };
 use crate::scene::suggest::list;
 use crate::scene::syntax::Path;
@@ -57,9 +57,8 @@ impl Taken<'_> {
                 }
                 Entry::Occupied(taken) => {
                     let name = taken.key();
-                    let inner = name.strip_prefix(self.part).and_then(|rest| rest.strip_prefix('.')).unwrap_or(name);
                     self.problems.push(Problem {
-                        path: self.path.name("content").name(field).name(inner),
+                        path: self.path.name("content").name(field).name(inner_name(name, self.part)),
                         message: format!("`{name}` is in the scene already"),
                         note: format!("name the part, or the other one of the {field}, otherwise"),
                     });
@@ -121,6 +120,11 @@ fn whole(name: &str, part: Part, path: &Path, problems: &mut Vec<Problem>) -> Op
         naming.place(&placement, &mut content);
     }
     Some(content)
+}
+
+/// The name that something has in its part.
+fn inner_name<'a>(name: &'a str, part: &str) -> &'a str {
+    name.strip_prefix(part).and_then(|rest| rest.strip_prefix('.')).unwrap_or(name)
 }
 
 /// Whether a name can stand before a dot.
@@ -333,11 +337,19 @@ impl Naming<'_> {
         for (name, body) in &mut content.bodies {
             placement.body(body);
             if body.rest_shape.is_some() {
-                let inner = name.strip_prefix(self.part).and_then(|rest| rest.strip_prefix('.')).unwrap_or(name);
-                let path = self.path.name("bodies").name(inner).name("rest_shape");
+                let path = self.path.name("bodies").name(inner_name(name, self.part)).name("rest_shape");
                 let message = format!("the part `{}` is placed, and a `rest_shape` is not", self.part);
                 self.problems.push(Problem { path, message, note: "it says where nodes are in the scene".to_string() });
             }
+            let of_direction = |key: &&String| split(key).is_ok_and(|(_, way)| Of::of(&way) == Of::Direction);
+            if let Some(key) = body.per_copy.keys().find(of_direction) {
+                let path = self.path.name("bodies").name(inner_name(name, self.part)).name("per_copy");
+                let message = format!("the part `{}` is placed, and `{key}` is not", self.part);
+                self.problems.push(Problem { path, message, note: "directions of copies are the scene's".to_string() });
+            }
+        }
+        if placement.turns() {
+            self.no_vectors_of_copies(content);
         }
         content.materials.values_mut().for_each(|material| placement.material(material));
         for (number, constraint) in content.constraints.iter_mut().enumerate() {
@@ -355,5 +367,22 @@ impl Naming<'_> {
         content.attachments.iter_mut().for_each(|attachment| placement.attachment(attachment));
         content.removal.iter_mut().for_each(|removal| placement.removal(removal));
         content.probes.values_mut().for_each(|probe| placement.probe(probe));
+    }
+
+    /// Vectors of copies are along the axes of the scene, and what they multiply has been turned with the part.
+    fn no_vectors_of_copies(&mut self, content: &PartScene) {
+        let of_constraint = |constraint: &Constraint| match constraint {
+            Constraint::Prescribed { per_copy, .. } => per_copy.as_ref().is_some_and(|values| values.is_vector()),
+            Constraint::Fixed { .. } => false,
+        };
+        let of_load = |load: &Load| load.parts().on.per_copy().is_some_and(PerCopy::is_vector);
+        let constraints = content.constraints.iter().map(of_constraint).enumerate();
+        let constraints = constraints.map(|(number, found)| ("constraints", number, found));
+        let loads = content.loads.iter().map(of_load).enumerate().map(|(number, found)| ("loads", number, found));
+        for (list, number, _) in constraints.chain(loads).filter(|(.., found)| *found) {
+            let path = self.path.name(list).index(number).name("per_copy");
+            let message = format!("the part `{}` is turned, and vectors of copies are not", self.part);
+            self.tell(path, message, "one number a copy turns with the part");
+        }
     }
 }

@@ -27,6 +27,11 @@ impl Placement {
         self.scale == 1.0 && self.turn.is_none() && self.translate == DVec3::ZERO
     }
 
+    /// Whether directions become others.
+    pub fn turns(&self) -> bool {
+        self.turn.is_some()
+    }
+
     fn direction(&self, value: &mut DVec3) {
         if let Some(turn) = self.turn {
             *value = turn * *value;

@@ -43,7 +43,7 @@ pub enum Constraint {
         /// The fixed point of gradient and rotation (m).
         #[serde(default)]
         center: DVec3,
-        /// What the motion is multiplied with on each of the body's copies; not with a rotation.
+        /// What the motion is multiplied with on each of the body's copies, along each axis; not with a rotation.
         #[serde(default)]
         per_copy: Option<Box<PerCopy>>,
         /// Course in time.

@@ -16,6 +16,9 @@ pub enum Load {
         body: Option<String>,
         /// Acceleration (m/s²).
         acceleration: DVec3,
+        /// What the acceleration is multiplied with in each copy of the body, which is named then.
+        #[serde(default)]
+        per_copy: Option<PerCopy>,
         /// Course in time.
         #[serde(default)]
         curve: Curve,
@@ -32,7 +35,7 @@ pub enum Load {
         /// Whether each node gets the force, or all together.
         #[serde(default)]
         share: Share,
-        /// What the force is multiplied with on each of the body's copies.
+        /// What the force is multiplied with on each of the body's copies, along each axis.
         #[serde(default)]
         per_copy: Option<PerCopy>,
         /// Course in time.
@@ -64,7 +67,7 @@ pub enum Load {
         on: Select,
         /// Force per rest area (Pa).
         traction: DVec3,
-        /// What the traction is multiplied with on each of the body's copies.
+        /// What the traction is multiplied with on each of the body's copies, along each axis.
         #[serde(default)]
         per_copy: Option<PerCopy>,
         /// Course in time.
@@ -80,11 +83,11 @@ impl Load {
     /// What it has in common with other kinds.
     pub fn parts(&self) -> LoadParts<'_> {
         match self {
-            Load::Gravity { body, acceleration, curve } => LoadParts {
+            Load::Gravity { body, acceleration, per_copy, curve } => LoadParts {
                 word: "Gravity",
                 name: "gravity",
                 body: body.as_ref(),
-                on: On::Bodies,
+                on: On::Bodies(per_copy.as_ref()),
                 field: ("acceleration", "m/s²"),
                 amplitude: *acceleration,
                 usual: Some(&GRAVITY),

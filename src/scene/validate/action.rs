@@ -1,7 +1,7 @@
 //! Constraints, loads, removal and probes: what they select and what they do.
 
 use super::{Validator, per_copy, scene, select, show};
-use crate::scene::schema::{Axis, Constraint, LoadParts, Quantity, Scene, When};
+use crate::scene::schema::{Axis, Constraint, Quantity, Scene, When};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use glam::DVec3;
@@ -32,9 +32,8 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
     }
     for (i, load) in scene_.loads.iter().enumerate() {
         let path = scene("loads").index(i);
-        let LoadParts { body, on, .. } = load.parts();
-        per_copy::of_body(scene_, validator, &path, body, on.per_copy());
-        if let Some(on) = on.select() {
+        per_copy::of_load(scene_, validator, &path, load);
+        if let Some(on) = load.parts().on.select() {
             select::validate(validator, &path.name("on"), on);
         }
     }

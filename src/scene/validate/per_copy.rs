@@ -1,9 +1,9 @@
 //! What differs from copy to copy of a body: places of numbers, and materials that each copy can have.
 
 use super::{Validator, material, scene, show};
-use crate::scene::copied_material::{CopiedMaterial, parameters, split};
+use crate::scene::copied_material::{CopiedMaterial, Part, numbers_of, parameters, split};
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{Body, Material, PerCopy, Scene};
+use crate::scene::schema::{Body, Load, LoadParts, Material, PerCopy, Scene};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use std::collections::BTreeSet;
@@ -21,9 +21,12 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
         let mut all_well = true;
         for (key, values) in &body.per_copy {
             let path = path.name(key);
-            if let Err((message, notes)) = place(&file.scene, body, key, &mut places) {
-                validator.out.error_at(&path, message).notes(notes);
-                all_well = false;
+            for key in numbers_of(key, values, 0).into_iter().map(|(key, _)| key) {
+                if let Err((message, notes)) = place(&file.scene, (name, body), &key, &mut places) {
+                    validator.out.error_at(&path, message).notes(notes);
+                    all_well = false;
+                    break;
+                }
             }
             all_well &= numbers(validator, &path, values, body.copies);
         }
@@ -49,6 +52,25 @@ pub(super) fn of_body(
     }
 }
 
+/// Looks at what a load is multiplied with in each copy.
+pub(super) fn of_load(scene_: &Scene, validator: &mut Validator, path: &Path, load: &Load) {
+    let LoadParts { body, on, name, .. } = load.parts();
+    let Some(values) = on.per_copy() else { return };
+    let place = path.name("per_copy");
+    if matches!(load, Load::Pressure { .. }) && values.is_vector() {
+        validator
+            .out
+            .error_at(&place, format!("a {name} has no direction of its own: one number a copy"))
+            .note("Linear(...), Uniform(...), LogUniform(...) or Values([...]); a `Traction` has a direction");
+    }
+    if on.select().is_none() && body.is_none() {
+        let told = validator.out.error_at(place, format!("{name} on all bodies is the same in all copies"));
+        told.note("name the `body` whose copies it differs in");
+        return;
+    }
+    of_body(scene_, validator, path, body, Some(values));
+}
+
 /// Whether a body has copies that may differ.
 fn has_copies(validator: &mut Validator, path: &Path, body: &Body) -> bool {
     if body.copies < 2 {
@@ -61,7 +83,7 @@ fn has_copies(validator: &mut Validator, path: &Path, body: &Body) -> bool {
 /// Looks whether a key leads to a parameter that may differ, and nothing else has led there.
 fn place(
     scene_: &Scene,
-    body: &Body,
+    (body_name, body): (&str, &Body),
     key: &str,
     places: &mut BTreeSet<(String, String)>,
 ) -> Result<(), (String, Vec<String>)> {
@@ -71,14 +93,23 @@ fn place(
     let Some(found) = scene_.materials.get(&name).filter(|_| used.contains(&name.as_str())) else {
         return Err((format!("the body has no material `{name}`"), choice(&name, used)));
     };
-    let (way, allowed) = (way.to_string(), parameters(found));
+    let (parsed, way, allowed) = (way.clone(), way.to_string(), parameters(found));
     if !allowed.contains(&way) {
         let message = format!("`{way}` of the material `{name}` cannot differ from copy to copy");
-        return Err((message, choice(&way, allowed.iter().map(String::as_str))));
+        let mut notes = choice(&way, allowed.iter().map(String::as_str));
+        if found.law.is_some() && (Part::of(&parsed) == Part::Memory || way.starts_with("law")) {
+            notes.push("a law of your own, and what its elements remember, are the same in all copies".to_string());
+        }
+        return Err((message, notes));
     }
-    if has_no_weight(found, &way) {
-        let message = format!("the material `{name}` has fibres of no stiffness: they do not exist");
-        return Err((message, vec!["give them a stiffness above 0 there, of any size".to_string()]));
+    if let Some(what) = has_no_weight(found, &way) {
+        let message = format!("the material `{name}` has {what}: what has no weight does not exist");
+        return Err((message, vec!["give it a number above 0 there, of any size".to_string()]));
+    }
+    if Part::of(&parsed) == Part::Inertia && scene_.may_lose_elements(body_name) {
+        let message = format!("`{way}` cannot differ in a body that loses elements");
+        let note = "what takes elements away knows one density and damping for all of a material";
+        return Err((message, vec![note.to_string()]));
     }
     if !places.insert((name, way)) {
         return Err((format!("`{key}` stands here twice, written otherwise"), Vec::new()));
@@ -86,12 +117,25 @@ fn place(
     Ok(())
 }
 
-/// Whether what a way leads to is of fibres that have no weight.
-fn has_no_weight(material: &Material, way: &str) -> bool {
+/// What has no weight in a material and therefore does not exist, where a way leads to it.
+fn has_no_weight(material: &Material, way: &str) -> Option<&'static str> {
+    let starts = |place: String| way.starts_with(&place);
     let families = material.exponential_fibres.iter().flatten().enumerate();
-    let of_none = |(number, k1): (usize, f64)| k1 == 0.0 && way.starts_with(&format!("exponential_fibres[{number}]"));
-    let fibres = material.fibres.as_ref().is_some_and(|fibres| fibres.eta == 0.0);
-    fibres && way.starts_with("fibres.") || families.map(|(number, family)| (number, family.k1)).any(of_none)
+    let of_family = families.filter(|(_, family)| family.k1 == 0.0);
+    let prony = material.prony.iter();
+    let terms = prony.flat_map(|prony| [("terms", &prony.terms), ("volumetric", &prony.volumetric)]);
+    let mut terms = terms.flat_map(|(word, terms)| terms.iter().enumerate().map(move |(i, term)| (word, i, term)));
+    if material.fibres.as_ref().is_some_and(|fibres| fibres.eta == 0.0) && starts("fibres.".into())
+        || of_family.into_iter().any(|(number, _)| starts(format!("exponential_fibres[{number}].")))
+    {
+        return Some("fibres of no stiffness");
+    }
+    if terms.any(|(word, number, term)| term.alpha == 0.0 && starts(format!("prony.{word}[{number}]."))) {
+        return Some("a term of viscosity of no share");
+    }
+    let is_zero = |rate: Option<f64>, word: &str| rate == Some(0.0) && way == word;
+    let damping = is_zero(material.damping, "damping") || is_zero(material.stiffness_damping, "stiffness_damping");
+    damping.then_some("damping of 0")
 }
 
 /// Whether there is a number for each copy.
@@ -112,6 +156,14 @@ fn numbers(validator: &mut Validator, path: &Path, values: &PerCopy, copies: u32
             validator.out.error_at(path, message);
             false
         }
+        PerCopy::Axes { x, y, z } => [("x", x), ("y", y), ("z", z)].into_iter().all(|(axis, values)| {
+            let path = path.name(axis);
+            if values.is_vector() {
+                validator.out.error_at(&path, "a component of a vector is one number a copy");
+                return false;
+            }
+            numbers(validator, &path, values, copies)
+        }),
         _ => true,
     }
 }

@@ -71,13 +71,7 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
         },
         Effect {
             name: "parameters per copy",
-            on: entity.get::<PerCopyLaw>().filter(|_| !of_frames).map(|PerCopyLaw(copies)| {
-                let moduli = copies.of_copy.iter().map(|of_copy| of_copy.elastic.small_strain_moduli()[0]);
-                let ends =
-                    moduli.fold((f64::INFINITY, 0.0_f64), |(low, high), shear| (low.min(shear), high.max(shear)));
-                let (low, high) = (short(ends.0), short(ends.1));
-                format!("{} copies, shear moduli from {low} to {high} Pa", copies.of_copy.len())
-            }),
+            on: copies(entity, of_frames),
             turned_on_by: format!("`per_copy` in the body {body}"),
         },
         Effect {
@@ -181,6 +175,25 @@ fn trial(material: Entity, world: &World) -> String {
          {finite}{cost})",
         found.derivative_error, found.single_precision_error, found.single_precision_energy_error,
     )
+}
+
+/// In what the copies of a block differ, from where to where.
+fn copies(entity: &EntityRef<'_>, of_frames: bool) -> Option<String> {
+    fn ends(what: &str, unit: &str, numbers: impl Iterator<Item = f64>) -> String {
+        let ends = numbers.fold((f64::INFINITY, 0.0_f64), |(low, high), number| (low.min(number), high.max(number)));
+        format!("{what} from {} to {} {unit}", short(ends.0), short(ends.1))
+    }
+    // with frames each element has a law of its own
+    let law = entity.get::<PerCopyLaw>().filter(|_| !of_frames);
+    let inertia = entity.get::<PerCopyInertia>();
+    let moduli = law.map(|PerCopyLaw(law)| {
+        ends("shear moduli", "Pa", law.of_copy.iter().map(|of_copy| of_copy.elastic.small_strain_moduli()[0]))
+    });
+    let densities = inertia.map(|own| ends("densities", "kg/m³", own.of_copy.iter().map(|[density, _]| *density)));
+    let memory = entity.get::<PerCopyMemory>().map(|_| "viscosity of their own".to_string());
+    let count = law.map(|PerCopyLaw(law)| law.of_copy.len()).or(inertia.map(|own| own.of_copy.len()))?;
+    let parts: Vec<String> = [moduli, memory, densities].into_iter().flatten().collect();
+    Some(format!("{count} copies, {}", parts.join(", ")))
 }
 
 fn viscosity(prony: &Prony, at_rest: bool) -> String {

@@ -4,6 +4,7 @@
 
 mod assets;
 mod bodies;
+mod gizmos;
 mod hands;
 mod time;
 

@@ -16,7 +16,7 @@ from collections.abc import Mapping
 from ._copies import per_copy
 from ._errors import Bug, Error, GpuError, NotConverged, SceneError, SnapshotError, Unstable
 from ._sinew import Body, Grab, Inputs, Pick, Picture, Scene, Simulation, Snapshot, __version__
-from ._sweep import Row, grid, latin_hypercube, sweep
+from ._sweep import Row, grid, latin_hypercube, read_sweep, sweep
 
 Mapping.register(Inputs)
 
@@ -41,5 +41,6 @@ __all__ = [
     "grid",
     "latin_hypercube",
     "per_copy",
+    "read_sweep",
     "sweep",
 ]

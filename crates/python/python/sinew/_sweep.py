@@ -1,12 +1,14 @@
-"""Many variants of a scene, wherever there are processors; what is done is kept, whatever happens."""
+"""Many variants of a scene, wherever there are processors; what is done is kept, whatever happens. Which there are, and
+what is known of them, is the engine's (`sinew sweep`); here they are spread."""
 
 from __future__ import annotations
 
 import concurrent.futures
-import hashlib
 import itertools
 import json
+import math
 import os
+import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,8 +17,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ._errors import Error, GpuError
-from ._sinew import Scene, Simulation, __version__
+from ._errors import Error, NotConverged, SceneError, Unstable
+from ._sinew import Scene, Simulation, SweepResults, latin_hypercube_rows, read_sweep_file
 
 Values = Mapping[str, Any]
 Keep = Sequence[str] | Callable[[Simulation], Mapping[str, Any]]
@@ -31,7 +33,7 @@ class Row:
     values: dict[str, Any]
     """What was put in, by place."""
     ended: str
-    """`finished`, or the name of what ended it: `Unstable`, `NotConverged`, `SceneError`, `GpuError`."""
+    """`Finished`, or the name of what ended it: `Unstable`, `NotConverged`, `SceneError`."""
     error: str | None
     """What was said then."""
     time: float
@@ -39,7 +41,8 @@ class Row:
     seconds: float
     """What it took on the wall (s), making it included."""
     kept: dict[str, NDArray[Any]]
-    """What was kept, by name: with `at` a first axis of times, of which a variant that ended early has fewer."""
+    """What was kept, by name: with `at` a first axis of times, of which a variant that ended early has fewer. What is no
+    finite number is `nan`."""
 
 
 class Executor(Protocol):
@@ -57,12 +60,20 @@ def grid(places: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
 def latin_hypercube(places: Mapping[str, tuple[float, float]], count: int, *, seed: int) -> list[dict[str, Any]]:
     """So many variants whose values of each place, from low to high, are one in each of `count` equal intervals (McKay,
     Beckman & Conover 1979). The same seed gives the same table."""
-    random = np.random.default_rng(seed)
-    columns = {}
-    for place, (low, high) in places.items():
-        shares = (random.permutation(count) + random.random(count)) / count
-        columns[place] = [float(low + share * (high - low)) for share in shares]
-    return [{place: column[row] for place, column in columns.items()} for row in range(count)]
+    rows = latin_hypercube_rows(list(places.items()), count, seed)
+    return [dict(zip(places, row, strict=True)) for row in rows]
+
+
+def read_sweep(path: str | os.PathLike[str], *, allow_outside: bool = False) -> dict[str, Any]:
+    """What `sweep` is given by a file of the command `sinew sweep`: `sweep(**read_sweep("sweep.ron"), out="out/sweep")`
+    goes on where the command was stopped, and the other way round."""
+    scene, table, keep, at = read_sweep_file(os.fspath(path))
+    return {
+        "scene": Scene(scene, allow_outside=allow_outside),
+        "table": table,
+        "keep": keep,
+        "at": at or None,
+    }
 
 
 def sweep(
@@ -84,9 +95,10 @@ def sweep(
         lists or arrays. It is asked at the times of `at` (s), or once at the scene's end.
     on: where: anything with `submit` whose futures are those of `concurrent.futures`, or a Dask client. Left out,
         threads of this process, one a core. A function for `keep` must be importable where processes do the work.
-    out: a file of JSON lines, one a row, written as rows come in. What stands in it is not run again: a sweep that was
-        cut off goes on. A line counts for the same scene text, values, times, probes (or name of the function), options
-        and version of sinew; content of mesh files is not looked at.
+    out: a folder, with the files of the command `sinew sweep`: `manifest.jsonl`, a line a row, written as rows come in,
+        and the table `rows.csv` of what probes saw. What stands in it is not run again, whoever ran it: a sweep that
+        was cut off goes on. A line counts for the same scene text, values, times, probes (or name of the function),
+        options and version of sinew; content of mesh files is not looked at.
     part: (3, 16) takes the third of 16 parts of the table, each 16th row; the rows' numbers stay those of the table.
     pack: rows are sent in packs of about so many seconds, `ahead` packs ahead of what has come back.
     options: those of Simulation; `threads` is 1 and `backend` "cpu" unless they say otherwise.
@@ -97,75 +109,61 @@ def sweep(
     which, parts = part
     if not 1 <= which <= parts:
         raise ValueError(f"there is no part {which} of {parts}")
-    options = {"threads": 1, "backend": "cpu", **options}
-    numbered = [(number, dict(values)) for number, values in enumerate(table) if number % parts == which - 1]
-    how = (None if at is None else [float(time) for time in at], _keep_name(keep), options)
-    keys = {number: _key(scene, values, how) for number, values in numbered}
-    done = dict(_read(out, keys)) if out is not None else {}
-    missing = [variant for variant in numbered if variant[0] not in done]
-    work = (scene, keep, how[0], options)
-    for line in _run(work, missing, on, pack, ahead):
-        done[line["number"]] = line
-        if out is not None:
-            _write(out, {"key": keys[line["number"]], "version": __version__, **line})
-    return [_row(done[number]) for number, _ in numbered]
+    options = {"threads": 1, "backend": "cpu", "precision": "f32", "grabs": False, **options}
+    rows = [dict(values) for values in table]
+    times = [] if at is None else [float(time) for time in at]
+    with tempfile.TemporaryDirectory() as nowhere:
+        how = (options["backend"], options["precision"], options["grabs"])
+        results = SweepResults(scene, rows, _keep_name(keep), times, part, os.fspath(out or nowhere), how)
+        missing = [(number, rows[number]) for number in results.missing()]
+        try:
+            for number, line in _run((scene, keep, times or None, options), missing, on, pack, ahead):
+                results.add(number, json.dumps(line))
+        finally:
+            results.write_table()
+        lines = [json.loads(line) for line in results.lines()]
+    return [_row(line, rows[line["number"]]) for line in lines]
 
 
-def _keep_name(keep: Keep) -> Any:
+def _keep_name(keep: Keep) -> str | list[str]:
     if callable(keep):
         return f"{keep.__module__}.{getattr(keep, '__qualname__', type(keep).__qualname__)}"
     return list(keep)
 
 
-def _key(scene: Scene, values: Values, how: tuple[Any, ...]) -> str:
-    what = [__version__, scene.text, values, *how]
-    return hashlib.sha256(json.dumps(what, sort_keys=True, default=_plain).encode()).hexdigest()[:32]
-
-
 def _plain(value: Any) -> Any:
-    """Numbers and arrays of numpy as JSON has them."""
+    """What is kept as JSON has it: numbers and arrays of numpy as lists, what is no finite number as null."""
     if hasattr(value, "tolist"):
-        return value.tolist()
+        value = value.tolist()
+    if isinstance(value, Mapping):
+        return {str(name): _plain(part) for name, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(part) for part in value]
+    if value is None or (isinstance(value, float) and not math.isfinite(value)):
+        return None
+    if isinstance(value, bool | int | float | str):
+        return value
     raise TypeError(f"{value!r} cannot be kept: only numbers, texts, lists, dicts and arrays can")
 
 
-def _read(out: str | os.PathLike[str], keys: Mapping[int, str]) -> Iterator[tuple[int, dict[str, Any]]]:
+def _array(value: Any) -> NDArray[Any]:
     try:
-        file = open(out, encoding="utf-8")
-    except FileNotFoundError:
-        return
-    with file:
-        for text in file:
-            try:
-                line = json.loads(text)
-            except ValueError:
-                continue  # cut off in the middle
-            number = line.get("number")
-            # a GPU that failed says nothing of the variant
-            if keys.get(number) == line.get("key") and line.get("ended") != GpuError.__name__:
-                yield number, line
+        array = np.asarray(value)
+        return np.asarray(value, np.float64) if array.dtype == object else array
+    except (TypeError, ValueError):
+        return np.asarray(value, object)
 
 
-def _write(out: str | os.PathLike[str], line: Mapping[str, Any]) -> None:
-    with open(out, "a+b") as file:
-        # after a line that was cut off a new one begins
-        if file.tell() > 0:
-            file.seek(-1, os.SEEK_END)
-            if file.read(1) != b"\n":
-                file.write(b"\n")
-        file.write((json.dumps(line, default=_plain) + "\n").encode())
-
-
-def _row(line: Mapping[str, Any]) -> Row:
-    kept = {name: np.asarray(value) for name, value in line["kept"].items()}
-    names = ("number", "values", "ended", "error", "time", "seconds")
-    return Row(**{name: line[name] for name in names}, kept=kept)
+def _row(line: Mapping[str, Any], values: Values) -> Row:
+    kept = {name: _array(value) for name, value in line["kept"].items()}
+    names = ("number", "ended", "error", "time", "seconds")
+    return Row(**{name: line[name] for name in names}, values=dict(values), kept=kept)
 
 
 def _run(
     work: tuple[Any, ...], variants: Sequence[tuple[int, Values]], on: Executor | None, pack: float, ahead: int | None
-) -> Iterator[dict[str, Any]]:
-    """Lines as they come in."""
+) -> Iterator[tuple[int, dict[str, Any]]]:
+    """Numbers and lines as they come in."""
     if not variants:
         return
     own = concurrent.futures.ThreadPoolExecutor(os.cpu_count()) if on is None else None
@@ -187,7 +185,7 @@ def _run(
             for future in finished:
                 for line in future.result():
                     seconds, lines = seconds + line["seconds"], lines + 1
-                    yield line
+                    yield line["number"], line
     finally:
         for future in flying:
             future.cancel()
@@ -211,7 +209,7 @@ def _run_one(
 ) -> dict[str, Any]:
     started = time.perf_counter()
     kept: dict[str, Any] = {}
-    reached, ended, error = 0.0, "finished", None
+    reached, ended, error = 0.0, "Finished", None
     simulation = None
     try:
         simulation = Simulation(scene.with_values(values), **options)
@@ -222,17 +220,18 @@ def _run_one(
             simulation.advance_to(moment)
             for name, value in _ask(keep, simulation).items():
                 kept.setdefault(name, []).append(value)
-    except Error as problem:
+    except (Unstable, NotConverged, SceneError) as problem:
+        # other errors say nothing of the variant
         ended, error = type(problem).__name__, str(problem)
     if simulation is not None:
         try:
             reached = simulation.time
         except Error:
             pass
-    line = {"number": number, "values": dict(values), "ended": ended, "error": error, "time": reached}
-    # what a process hands over is what the file holds
-    plain: dict[str, Any] = json.loads(json.dumps({**line, "kept": kept}, default=_plain))
-    return {**plain, "seconds": time.perf_counter() - started}
+    seconds = time.perf_counter() - started
+    # what a process hands over is what the file holds, without the values
+    line = {"number": number, "ended": ended, "error": error, "time": reached, "seconds": seconds}
+    return {**line, "kept": _plain(kept)}
 
 
 def _ask(keep: Keep, simulation: Simulation) -> Mapping[str, Any]:

@@ -2,8 +2,8 @@
 
 use super::{SweepError, Value};
 use serde::{Deserialize, Serialize};
-use sinew::Error;
-use std::collections::HashMap;
+use sinew::{Error, Options};
+use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Read, Write};
@@ -15,8 +15,8 @@ use twox_hash::XxHash64;
 pub struct Done {
     /// Its number in the sweep, counted from 0.
     pub number: usize,
-    /// What was put in, in the order of the places.
-    pub values: Vec<Value>,
+    /// What was put in, by place.
+    pub values: BTreeMap<String, Value>,
     /// How it ended.
     pub ended: Ended,
     /// What was said then.
@@ -25,9 +25,9 @@ pub struct Done {
     pub time: f64,
     /// What it took on the wall (s).
     pub seconds: f64,
-    /// What probes saw, all of them one after the other, once or at each time; fewer times where it ended early. `None`
-    /// is what is no number.
-    pub kept: Vec<Vec<Option<f64>>>,
+    /// What was kept, by name: of a probe its numbers, or a list of them for each time, of which there are fewer where
+    /// it ended early. What is no number is null.
+    pub kept: BTreeMap<String, serde_json::Value>,
 }
 
 /// How a variant ended.
@@ -69,8 +69,12 @@ struct Line {
     done: Done,
 }
 
-/// What makes two rows the same, as a key.
-pub(super) fn key(what: &str) -> String {
+/// What makes two rows the same, as a key: version, text of the scene, what is put in as `--set` has it, names of what
+/// is kept and when (s), and how it runs. What mesh files hold is not looked at.
+pub fn key(scene: &str, sets: &[String], keep: &[String], at: &[f64], options: &Options) -> String {
+    let Options { backend, precision, scheme, grabs, .. } = options;
+    let how = format!("{} {backend:?} {precision:?} {scheme:?} {grabs}", env!("CARGO_PKG_VERSION"));
+    let what = format!("{how}\n{scene:?}\n{sets:?}\n{keep:?}\n{at:?}");
     format!("{:016x}", XxHash64::oneshot(0, what.as_bytes()))
 }
 

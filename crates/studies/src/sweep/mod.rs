@@ -7,13 +7,14 @@ mod manifest;
 mod rows;
 mod table;
 
-pub use manifest::{Done, Ended};
+pub use manifest::{Done, Ended, key};
+pub use rows::{Kept, Results};
 pub use table::{SweepFile, Value, Variants};
 
-use manifest::Manifest;
-use sinew::observation::header;
+use serde_json::Value as Json;
 use sinew::scene::{Allowed, Diagnostics};
 use sinew::{Ended as Why, Error, Options, SceneFile, Simulation};
+use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc;
@@ -88,8 +89,7 @@ pub struct Sweep {
     text: String,
     allowed: Allowed,
     variants: Vec<Vec<Value>>,
-    /// Columns of what is kept, by probe.
-    columns: Vec<Vec<&'static str>>,
+    kept: Kept,
 }
 
 /// How a sweep is run.
@@ -129,33 +129,10 @@ impl Sweep {
         let scene = path.parent().unwrap_or(Path::new("")).join(&file.scene);
         let base =
             SceneFile::load_allowing(&scene, &[], allowed).map_err(|wrong| SweepError::Scene(Box::new(wrong)))?;
-        let probes = &base.scene.probes;
-        let columns = file.keep.iter().map(|name| match probes.get(name) {
-            // of its table, less the time
-            Some(probe) => Ok(header(&probe.what).split_off(1)),
-            None => {
-                let there: Vec<&str> = probes.keys().map(String::as_str).collect();
-                Err(SweepError::File(format!(
-                    "{}: keep: the scene has no probe {name:?}; it has {}",
-                    path.display(),
-                    if there.is_empty() { "none".into() } else { there.join(", ") }
-                )))
-            }
-        });
-        let columns = columns.collect::<Result<_, _>>()?;
-        if let Some(late) = file.at.iter().find(|&&time| time > base.scene.duration) {
-            let end = base.scene.duration;
-            return Err(SweepError::File(format!(
-                "{}: at: {late} s is after the scene's end, {end} s",
-                path.display()
-            )));
-        }
-        if base.scene.is_static() && !file.at.is_empty() {
-            let what = "at: a static analysis has no times; leave it out, and probes are asked at rest";
-            return Err(SweepError::File(format!("{}: {what}", path.display())));
-        }
+        let kept = Kept::of(&base, &file.keep, &file.at);
+        let kept = kept.map_err(|what| SweepError::File(format!("{}: {what}", path.display())))?;
         let variants = file.variants.rows();
-        Ok(Self { text: base.text().to_owned(), scene, variants, columns, allowed, file })
+        Ok(Self { text: base.text().to_owned(), scene, variants, kept, allowed, file })
     }
 
     /// How many variants there are.
@@ -173,55 +150,39 @@ impl Sweep {
     /// # Errors
     /// Results that cannot be read or written; a GPU that is not there or fails. What is done is kept.
     pub fn run(&self, how: &How<'_>, mut tell: impl FnMut(&Done)) -> Result<Outcome, SweepError> {
-        let part: Vec<usize> = (0..self.count()).filter(|&number| how.part.has(number)).collect();
-        let keys: Vec<String> = part.iter().map(|&number| self.key(number, &how.options)).collect();
-        std::fs::create_dir_all(how.out).map_err(|error| SweepError::Files(how.out.into(), error))?;
-        let [table, lines] = [("rows", "csv"), ("manifest", "jsonl")]
-            .map(|(stem, extension)| how.out.join(how.part.file(stem, extension)));
-        let mut manifest = Manifest::open(&lines)?;
-        let mut rows: Vec<Option<Done>> =
-            part.iter().zip(&keys).map(|(&number, key)| manifest.find(number, key)).collect();
-        let before = rows.iter().flatten().count();
-        let missing: Vec<usize> = (0..part.len()).filter(|&place| rows[place].is_none()).collect();
+        let SweepFile { keep, at, .. } = &self.file;
+        let keys = (0..self.count()).map(|number| key(&self.text, &self.sets(number), keep, at, &how.options));
+        let mut results = Results::open(how.out, how.part, keys.collect())?;
+        let missing = results.missing();
+        let before = results.count() - missing.len();
         let next = Mutex::new(missing.iter());
         let (send, receive) = mpsc::channel();
         std::thread::scope(|scope| {
             for _ in 0..how.at_once.clamp(1, missing.len().max(1)) {
-                let (send, next, part) = (send.clone(), &next, &part);
+                let (send, next) = (send.clone(), &next);
                 scope.spawn(move || {
                     loop {
-                        let place = next.lock().unwrap_or_else(PoisonError::into_inner).next();
-                        let Some(&place) = place.filter(|_| !(how.stop)()) else { break };
-                        let row = self.row(part[place], how);
+                        let number = next.lock().unwrap_or_else(PoisonError::into_inner).next();
+                        let Some(&number) = number.filter(|_| !(how.stop)()) else { break };
+                        let row = self.row(number, how);
                         let goes_on = matches!(row, Ok(Some(_)));
-                        if send.send((place, row)).is_err() || !goes_on {
+                        if send.send(row).is_err() || !goes_on {
                             break;
                         }
                     }
                 });
             }
             drop(send);
-            for (place, row) in receive {
+            for row in receive {
                 let Some(row) = row? else { continue };
-                manifest.add(&keys[place], &row)?;
                 tell(&row);
-                rows[place] = Some(row);
+                results.add(row)?;
             }
             Ok(())
         })?;
-        let rows: Vec<Done> = rows.into_iter().flatten().collect();
-        rows::write(&table, &self.places(), &self.columns_of_table(), &rows)?;
-        Ok(Outcome { rows, before, variants: part.len(), files: [table, lines] })
-    }
-
-    /// What makes two rows the same: version, scene, values, what is kept and when, and how it ran. What mesh files
-    /// hold is not looked at.
-    fn key(&self, number: usize, options: &Options) -> String {
-        let Options { backend, precision, scheme, .. } = options;
-        let SweepFile { keep, at, .. } = &self.file;
-        let sets = self.sets(number);
-        let how = format!("{} {backend:?} {precision:?} {scheme:?}", env!("CARGO_PKG_VERSION"));
-        manifest::key(&format!("{how}\n{:?}\n{sets:?}\n{keep:?}\n{at:?}", self.text))
+        results.write_table(&self.places(), &self.kept)?;
+        let (variants, files) = (results.count(), results.files().clone());
+        Ok(Outcome { rows: results.done().cloned().collect(), before, variants, files })
     }
 
     /// What `--set` would be given.
@@ -233,9 +194,10 @@ impl Sweep {
     /// Runs a variant; `None` where it was told to stop.
     fn row(&self, number: usize, how: &How<'_>) -> Result<Option<Done>, SweepError> {
         let started = Instant::now();
-        let values = self.variants[number].clone();
-        let mut row =
-            Done { number, values, ended: Ended::Finished, error: None, time: 0.0, seconds: 0.0, kept: vec![] };
+        let places = self.places().into_iter().map(str::to_owned);
+        let values = places.zip(self.variants[number].iter().cloned()).collect();
+        let (ended, kept) = (Ended::Finished, BTreeMap::new());
+        let mut row = Done { number, values, ended, error: None, time: 0.0, seconds: 0.0, kept };
         let done = match SceneFile::load_allowing(&self.scene, &self.sets(number), self.allowed) {
             Ok(scene) => self.simulate(&scene, how, &mut row),
             Err(wrong) => Err(Error::Scene(Box::new(wrong))),
@@ -256,55 +218,52 @@ impl Sweep {
     /// Takes a variant to its end, asking probes on the way. False: it was told to stop.
     fn simulate(&self, scene: &SceneFile, how: &How<'_>, row: &mut Done) -> Result<bool, Error> {
         let mut simulation = Simulation::new(scene, &how.options)?;
+        let done = self.to_the_end(&mut simulation, how, row);
+        // also where it broke down
+        row.time = simulation.time();
+        done
+    }
+
+    fn to_the_end(&self, simulation: &mut Simulation, how: &How<'_>, row: &mut Done) -> Result<bool, Error> {
         for &time in &self.file.at {
             loop {
                 if (how.stop)() {
                     return Ok(false);
                 }
                 let advanced = simulation.advance_for(PIECE, time)?;
-                row.time = simulation.time();
                 if advanced.why != Why::Budget {
                     break;
                 }
             }
-            self.ask(&mut simulation, row)?;
+            self.ask(simulation, row)?;
         }
         while self.file.at.is_empty() && !simulation.is_finished() {
             if (how.stop)() {
                 return Ok(false);
             }
             simulation.advance_towards_end(PSEUDO_STEPS)?;
-            row.time = simulation.time();
         }
         if self.file.at.is_empty() {
-            self.ask(&mut simulation, row)?;
+            self.ask(simulation, row)?;
         }
         Ok(true)
     }
 
     /// Keeps what probes see now.
     fn ask(&self, simulation: &mut Simulation, row: &mut Done) -> Result<(), Error> {
-        let mut seen = Vec::new();
-        for (name, columns) in self.file.keep.iter().zip(&self.columns) {
+        for (name, columns) in self.kept.probes() {
             let numbers = simulation.probe(name)?;
             if numbers.len() != columns.len() {
                 return Err(Error::Broken("a column of a probe"));
             }
-            // what is no number is none: of a gap where nothing is near, for instance
-            seen.extend(numbers.into_iter().map(|number| number.is_finite().then_some(number)));
+            // what is no number is null: of a gap where nothing is near, for instance
+            let numbers = Json::from(numbers);
+            if self.file.at.is_empty() {
+                row.kept.insert(name.clone(), numbers);
+            } else if let Json::Array(times) = row.kept.entry(name.clone()).or_insert_with(|| Json::Array(Vec::new())) {
+                times.push(numbers);
+            }
         }
-        row.kept.push(seen);
         Ok(())
-    }
-
-    /// Columns of what is kept: `tip ux (m)`, with times `tip ux (m) at 0.01 s`.
-    fn columns_of_table(&self) -> Vec<String> {
-        let names = self.file.keep.iter().zip(&self.columns);
-        let at_once: Vec<String> =
-            names.flat_map(|(name, columns)| columns.iter().map(move |column| format!("{name} {column}"))).collect();
-        match &self.file.at[..] {
-            [] => at_once,
-            times => times.iter().flat_map(|t| at_once.iter().map(move |name| format!("{name} at {t} s"))).collect(),
-        }
     }
 }

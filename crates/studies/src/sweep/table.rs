@@ -123,7 +123,11 @@ impl Variants {
         }
     }
 
-    fn check(&self) -> Result<(), String> {
+    /// Whether they make sense.
+    ///
+    /// # Errors
+    /// What is wrong, in one sentence.
+    pub fn check(&self) -> Result<(), String> {
         let places = self.places();
         if places.is_empty() {
             return Err("variants: name at least one place, such as \"materials.tissue.density\"".into());
@@ -165,8 +169,8 @@ impl Variants {
         }
     }
 
-    /// All rows.
-    pub(super) fn rows(&self) -> Vec<Vec<Value>> {
+    /// All rows, each with a value for every place, in the order of [`places`](Self::places).
+    pub fn rows(&self) -> Vec<Vec<Value>> {
         match self {
             Variants::Grid(places) => {
                 let count: usize = places.iter().map(|(_, values)| values.len()).product();

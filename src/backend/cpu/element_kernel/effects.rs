@@ -1,6 +1,7 @@
 //! What a material has on top of its elastic law: fibres and viscosity.
 
-use super::PatchForces;
+use super::{GENERIC, PatchForces};
+use crate::backend::cpu::BlockLaw;
 use crate::components::FamilyDirection;
 use crate::elements::Element;
 use crate::materials::{Elastic, ExponentialFibre, Kinematics, PronyTerm};
@@ -90,10 +91,8 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
     ) -> T::Vector<S> {
         let mut rest = pressure;
         for (number, term) in self.law.volumetric.iter().enumerate() {
-            let term = term.map(
-                #[inline(always)]
-                |number: T| T::splat(simd, number),
-            );
+            let place = (self.first_group + group, at, self.law.prony.len() + number);
+            let term = term_of::<T, S, EFFECTS>(simd, self.law, place, term);
             let first = group * self.law.memory_numbers(E::POINTS) + 6 * self.law.prony.len() * E::POINTS;
             let place = (first + number) * LANES + at;
             let memory = T::load(simd, &self.memory[place..]);
@@ -116,17 +115,22 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
         isochoric: &Sym3<T::Vector<S>>,
         other: Sym3<T::Vector<S>>,
     ) -> Sym3<T::Vector<S>> {
-        let terms = &self.law.prony[..];
+        let (law, of_block) = (self.law, self.first_group + group);
+        let terms = &law.prony[..];
         let first = group * self.memory_rows + 6 * point * terms.len();
         let rows = &mut self.memory.as_chunks_mut::<LANES>().0[first..];
         let mut rest = other;
         let mut share = T::splat(simd, T::default()).constant(1.0);
         match terms {
             // most have one: no loop, more stays in registers
-            [term] => relax_by(simd, term, at, isochoric, &mut rest, &mut share, rows),
+            [term] => {
+                let term = term_of::<T, S, EFFECTS>(simd, law, (of_block, at, 0), term);
+                relax_by(simd, &term, at, isochoric, &mut rest, &mut share, rows);
+            }
             _ => {
-                for (term, rows) in terms.iter().zip(rows.chunks_exact_mut(6)) {
-                    relax_by(simd, term, at, isochoric, &mut rest, &mut share, rows);
+                for (number, (term, rows)) in terms.iter().zip(rows.chunks_exact_mut(6)).enumerate() {
+                    let term = term_of::<T, S, EFFECTS>(simd, law, (of_block, at, number), term);
+                    relax_by(simd, &term, at, isochoric, &mut rest, &mut share, rows);
                 }
             }
         }
@@ -134,22 +138,40 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
     }
 }
 
+/// A term of a register full of elements, by the group in the block, the lane, and the place among all terms: the
+/// block's, or that of each element's copy.
+#[inline(always)]
+fn term_of<T: SimdScalar, S: Simd, const EFFECTS: u8>(
+    simd: S,
+    law: &BlockLaw<T>,
+    (group, at, number): (usize, usize, usize),
+    of_all: &PronyTerm<T>,
+) -> PronyTerm<T::Vector<S>> {
+    // a constant, so that only the kernel that asks for everything asks for this
+    if const { EFFECTS & GENERIC != 0 }
+        && let Some(copies) = &law.copies
+        && copies.have_terms()
+    {
+        return copies.term(simd, group, at, number);
+    }
+    of_all.map(
+        #[inline(always)]
+        |number: T| T::splat(simd, number),
+    )
+}
+
 /// Takes Υ of a term away, its part of the present stress from the `share` that is left of it, and carries its memory
 /// on.
 #[inline(always)]
 fn relax_by<T: SimdScalar, S: Simd>(
     simd: S,
-    term: &PronyTerm<T>,
+    term: &PronyTerm<T::Vector<S>>,
     at: usize,
     isochoric: &Sym3<T::Vector<S>>,
     rest: &mut Sym3<T::Vector<S>>,
     share: &mut T::Vector<S>,
     rows: &mut [[T; LANES]],
 ) {
-    let term = term.map(
-        #[inline(always)]
-        |number: T| T::splat(simd, number),
-    );
     *share -= term.stress;
     let Some(rows) = rows.first_chunk_mut::<6>() else { return };
     for i in 0..6 {
