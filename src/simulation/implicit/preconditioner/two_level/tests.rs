@@ -109,28 +109,6 @@ fn it_is_symmetric_and_positive_at_rest_and_turned_where_nodes_slide_and_where_t
     }
 }
 
-/// What a spring on one node of a body answers with: as much as the rest of the body lets it.
-#[test]
-fn stiff_springs_are_known() {
-    let mut simulation = two_blocks();
-    let made = Made::of(&mut simulation);
-    let slope = DMat3::from_diagonal(DVec3::new(0.0, 1e6, 0.0));
-    let parts = [(60, 1.0)];
-    let springs = [SpringSlope { parts: &parts, slope }];
-    let mut r = vec![0.0; made.axes.len()];
-    r[61] = 1.0;
-    let answer = |springs: &[SpringSlope<'_>]| {
-        let mut two_level = TwoLevel::default();
-        two_level.follow(&Operator { springs, ..made.operator(&simulation) });
-        let mut z = vec![0.0; r.len()];
-        two_level.apply(&r, &mut z);
-        z[61]
-    };
-    let [without, with] = [answer(&[]), answer(&springs)];
-    // a share of the block, and one of the aggregate: each within twice what the spring alone gives way by
-    assert!(without > 1e-4 && with < 4.0 / 1e6 && with > 0.0, "{without} m, {with} m");
-}
-
 /// Pᵀ K P of elements' columns against products of the tangent with the motions.
 #[test]
 fn the_coarse_matrix_is_that_of_the_tangent() {
