@@ -157,6 +157,7 @@ struct Surface {
     numbers: Vec<(Entity, usize)>,
     // what a step finds, kept so that the next one need not ask for memory
     found: Vec<faced::Found>,
+    kept_by_task: Vec<crate::contact::Kept>,
     gathered: gather::Gathered,
     /// What may touch in an implicit step.
     pairs: Vec<solved::Pair>,

@@ -40,5 +40,10 @@ pub(super) fn with_moduli(before: &LawCopies<f64>, law: &CorotationalFrame<f64>)
 }
 
 fn of_elastic(law: CorotationalFrame<f64>) -> LawParameters<f64> {
-    LawParameters { elastic: ElasticLaw::CorotationalFrame(law), fibres: None, exponential: Vec::new(), terms: Vec::new() }
+    LawParameters {
+        elastic: ElasticLaw::CorotationalFrame(law),
+        fibres: None,
+        exponential: Vec::new(),
+        terms: Vec::new(),
+    }
 }

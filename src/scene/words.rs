@@ -27,17 +27,4 @@ pub fn meaning(owner: &str, field: &str) -> Option<String> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn fields_of_structs_and_variants_have_a_meaning() {
-        assert_eq!(
-            meaning("Scene", "duration").as_deref(),
-            Some("Simulated time (s); the time whose loads and motions a static analysis takes.")
-        );
-        assert_eq!(meaning("Young", "poisson").as_deref(), Some("Poisson's ratio, below 1/2."));
-        assert_eq!(meaning("Young", "density"), None);
-        assert_eq!(meaning("Nobody", "density"), None);
-    }
-}
+mod tests;

@@ -49,12 +49,14 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
     let farthest = contacts.farthest(reach);
     let [nearer, lately] = [&contacts.surface.motion.lists, &contacts.surface.motion.shortlists].map(|mark| mark.moved);
     let mut found = std::mem::take(&mut contacts.surface.found);
+    let mut kept = std::mem::take(&mut contacts.surface.kept_by_task);
+    let tasks = found.len().div_ceil(POINTS_A_TASK);
+    kept.resize_with(kept.len().max(tasks), Kept::default);
     let surface = &contacts.surface;
     let now = Placed { places: &surface.places, normals: &surface.normals };
     // what has moved so far may move back, too
     let stays = Stays { moved: surface.stays.moved + lately, reach: surface.stays.reach - reach };
-    cpu.for_each(found.chunks_mut(POINTS_A_TASK), |found| {
-        let mut kept = Kept::default();
+    cpu.for_each(found.chunks_mut(POINTS_A_TASK).zip(&mut kept), |(found, kept)| {
         for Found { place, faced, short } in found {
             *short = surface.shortlists[*place as usize];
             let point = &surface.points[surface.lists.points[*place as usize] as usize];
@@ -65,7 +67,7 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
             let place = *place as usize;
             let (triangles, distances) = (surface.lists.triangles(place), surface.lists.distances(place));
             let listed = Listed { triangles, distances, nearer, farthest };
-            surface.triangles.faced(now, point, listed, (reach_of, contacts.edge), (short, stays), (faced, &mut kept));
+            surface.triangles.faced(now, point, listed, (reach_of, contacts.edge), (short, stays), (faced, kept));
             if point.triangle.is_some() {
                 let both = [&mut faced.first, &mut faced.second];
                 both.into_iter().flatten().for_each(|facing| facing.gap = surface.gap_of_facet(point, facing));
@@ -78,5 +80,5 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
         surface.wake[*place as usize] = faced.wakes;
         surface.first_wake = surface.first_wake.min(faced.wakes);
     }
-    surface.found = found;
+    (surface.found, surface.kept_by_task) = (found, kept);
 }

@@ -17,9 +17,9 @@ pub fn bits(simulation: &mut Simulation, bodies: &[&str]) -> Vec<u64> {
     all.flat_map(|u| u.to_array().map(f64::to_bits)).collect()
 }
 
-/// Asks for the same bits at the time `end` (s) on one thread and on three, and on two with nothing fused, and after a pause at
-/// `pause` (s) from where the simulation is taken back seven steps; `seen` looks at what is there at both times, in
-/// this order: paused, ended.
+/// Asks for the same bits at the time `end` (s) on one thread and on three, and on two with nothing fused, and after a
+/// pause at `pause` (s) from where the simulation is taken back seven steps; `seen` looks at what is there at both
+/// times, in this order: paused, ended.
 pub fn bits_do_not_depend(text: &str, bodies: &[&str], [pause, end]: [f64; 2], seen: [fn(&mut Simulation); 2]) {
     for precision in [Precision::F32, Precision::F64] {
         let mut one = start(text, precision, 1);

@@ -31,6 +31,7 @@ const ABOUT: &[(&str, &str, &[&str])] = &[
         &["Tet4", "Tet4NodalPressure", "Hex8", "Hex8MeanDilatation"],
     ),
     ("src/scene/schema/per_copy.rs", "numbers that go evenly from one to another", &["Linear"]),
+    ("src/scene/validate/per_copy.rs", "the word for such numbers", &["Linear"]),
     ("src/observation/guards.rs", "what to take where hourglass modes grow", &["Hex8MeanDilatation"]),
     ("src/elements/tet4_nodal_pressure.rs", "made of the other element", &["Tet4"]),
     ("src/elements/hex8_mean_dilatation.rs", "made of the other element", &["Hex8", "hex8"]),

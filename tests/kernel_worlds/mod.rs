@@ -107,9 +107,7 @@ impl Effects {
                 all.push(Self { volumetric: true, reproject: true, ..plain });
             }
         }
-        let framed = Self { law: Some(FRAMED), removal: true, ..Self::default() };
-        all.push(Self { prony: 1, volumetric: true, scheme: Scheme::TwoPass, ..framed.clone() });
-        all.push(framed);
+        all.push(Self { law: Some(FRAMED), prony: 1, volumetric: true, removal: true, ..Self::default() });
         let at_rest = Self { at_rest: true, prony: 1, damping: true, moved: true, ..Self::default() };
         for (loads, compensated) in [(false, false), (false, true), (true, false), (true, true)] {
             all.push(Self { loads, compensated, ..at_rest.clone() });
@@ -128,8 +126,7 @@ impl Effects {
         for (law, varied) in VARIED {
             let own = Self { copies: true, law: Some(law), varied: Some(varied), ..Self::default() };
             all.push(Self { averaged: law == LAWS[2], ..own.clone() });
-            let families = (law != LAWS[0]).then_some(FAMILIES);
-            let fibres = (law != LAWS[0]).then_some(AROUND);
+            let [families, fibres] = [FAMILIES, AROUND].map(|word| (law != LAWS[0]).then_some(word));
             all.push(Self { families, fibres, removal: true, prony: 1, scheme: Scheme::TwoPass, ..own });
         }
         all.push(Self { averaged: true, ..Self::default() });

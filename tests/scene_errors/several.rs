@@ -80,7 +80,7 @@ error: unknown field `curv`
    │                                           ^^^^ not a field of Gravity
    │
    = did you mean `curve`?
-   = allowed: body, acceleration, curve
+   = allowed: body, acceleration, per_copy, curve
 
 "#;
 

@@ -102,9 +102,9 @@ impl Composer {
 fn parsed<'a>(fragments: impl IntoIterator<Item = &'a Fragment>, sources: &Sources) -> Result<Module, KernelError> {
     let mut module = naga::front::wgsl::parse_str(sources.text()).map_err(|e| sources.parse_error(&e))?;
     for name in fragments.into_iter().flat_map(|fragment| &fragment.private) {
-        let mut uniforms = module.global_variables.iter_mut().map(|(_, variable)| variable);
-        let uniform =
-            uniforms.find(|found| found.space == AddressSpace::Uniform && found.name.as_deref() == Some(name));
+        let may_be = |space| matches!(space, AddressSpace::Uniform | AddressSpace::Private);
+        let mut variables = module.global_variables.iter_mut().map(|(_, variable)| variable);
+        let uniform = variables.find(|found| may_be(found.space) && found.name.as_deref() == Some(name));
         let uniform = uniform.ok_or_else(|| variable_error(name, "is no uniform".to_owned()))?;
         (uniform.space, uniform.binding) = (AddressSpace::Private, None);
     }

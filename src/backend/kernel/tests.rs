@@ -56,8 +56,8 @@ fn bindings_tell_kind_type_size_and_stride() {
     assert_eq!((material.kind, material.size, material.stride), (BindingKind::Uniform, 64, None));
 }
 
-/// A uniform that an invocation has for itself: no buffer, and it may be written; another kernel of the same text has it
-/// as it stands there.
+/// A uniform that an invocation has for itself: no buffer, and it may be written; another kernel of the same text has
+/// it as it stands there.
 #[test]
 fn uniforms_become_variables_of_each_invocation_where_that_is_said() {
     let kernel = |material: Fragment| {

@@ -145,6 +145,11 @@ impl Load {
         }
     }
 
+    /// Whether what the course multiplies has a direction.
+    pub fn is_vector(&self) -> bool {
+        !matches!(self, Load::Pressure { .. })
+    }
+
     /// Its course in time.
     pub fn curve(&self) -> &Curve {
         self.parts().curve

@@ -57,11 +57,11 @@ pub(super) fn of_load(scene_: &Scene, validator: &mut Validator, path: &Path, lo
     let LoadParts { body, on, name, .. } = load.parts();
     let Some(values) = on.per_copy() else { return };
     let place = path.name("per_copy");
-    if matches!(load, Load::Pressure { .. }) && values.is_vector() {
+    if values.is_vector() && !load.is_vector() {
         validator
             .out
             .error_at(&place, format!("a {name} has no direction of its own: one number a copy"))
-            .note("Linear(...), Uniform(...), LogUniform(...) or Values([...]); a `Traction` has a direction");
+            .note("Linear(...), Uniform(...), LogUniform(...) or Values([...])");
     }
     if on.select().is_none() && body.is_none() {
         let told = validator.out.error_at(place, format!("{name} on all bodies is the same in all copies"));

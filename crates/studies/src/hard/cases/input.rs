@@ -35,6 +35,10 @@ pub fn bad_numbers(trial: &mut Trial<'_>) -> Result<(), Error> {
         ("a density that is no number", "materials.tissue.density=NaN", ["density", "NaN"]),
         ("an infinite modulus", "materials.tissue.neo_hookean=Moduli(shear: inf, bulk: 1)", ["shear", "inf"]),
     ] {
+        // which implicit steps do without
+        if trial.is_implicit() && set.starts_with("integration") {
+            continue;
+        }
         let made = trial.start(&[set.to_string()]);
         trial.refused(what, made, &words);
     }
