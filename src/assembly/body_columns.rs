@@ -114,17 +114,18 @@ pub fn nodal_masses(entities: &[Entity], count: usize, world: &World) -> (Vec<f6
 pub fn stiffnesses(world: &World, entity: Entity) -> Vec<Stiffness> {
     let Some(material) = world.get::<Block>(entity).map(|block| block.material) else { return Vec::new() };
     let inertia = ElementInertia::of(world, entity);
-    let density = |copy: usize| inertia.of_copy(copy)[0];
     if let Some(PerCopyLaw(copies)) = world.get(entity) {
-        let each = copies.of_copy.iter().enumerate();
-        return each.map(|(copy, of_copy)| stiffness_of(of_copy, density(copy))).collect();
+        // with frames of edges each element has a law of its own, whatever its copy
+        let mut densities = vec![f64::INFINITY; copies.of_copy.len()];
+        (0..).zip(&*copies.copies).for_each(|(row, &law)| densities[law as usize] = inertia.of_row(row)[0]);
+        return copies.of_copy.iter().zip(densities).map(|(law, density)| stiffness_of(law, density)).collect();
     }
     let Some(elastic) = ElasticLaw::of(world.entity(material)) else { return Vec::new() };
     let exponential = world.get::<ExponentialFibres>(material).map_or(Vec::new(), |all| all.0.clone());
     let fibres = world.get::<Fibres<f64>>(material).copied();
     let law = LawParameters { elastic, fibres, exponential, terms: Vec::new() };
     let copies = world.get::<PerCopyInertia>(entity).map_or(1, |own| own.of_copy.len());
-    (0..copies).map(|copy| stiffness_of(&law, density(copy))).collect()
+    (0..copies).map(|copy| stiffness_of(&law, inertia.of_copy(copy)[0])).collect()
 }
 
 /// The copy of each element of a block, by its row, where copies differ in what [`stiffnesses`] depend on.
