@@ -116,6 +116,12 @@ pub const SHORTFALLS: &[Shortfall] = &[
         why: "an elastic block that slides under constant friction rings (Adams 1995), and what hops is held less: at .5 it goes 2 % farther than a rigid one and its lean, where 1 % is allowed",
     },
     Shortfall {
+        case: "h41",
+        on: |c, _| c.implicit && c.is_tets(),
+        verdict: CaseVerdict::FailedHonestly,
+        why: "while it slides, a step of 1 ms is not found: Newton's directions lead no way down at a residual of 4e-8 to 3e-7 N; with the preconditioner that knew no springs it passed, and why has not been found out",
+    },
+    Shortfall {
         case: "h45",
         on: |c, _| c.is_gpu() && c.is_tets(),
         verdict: CaseVerdict::Failed,
