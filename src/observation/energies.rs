@@ -75,7 +75,7 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
         Displacement::NAME,
         DisplacementIncrement::NAME,
         Mass::NAME,
-        FictitiousMass::NAME,
+        InertialMass::NAME,
         Work::NAME,
         SchemeLoss::NAME,
         OwnNumbers::NAME,
@@ -88,7 +88,7 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
     let mut sum = Energies::default();
     let mut bodies = world.query::<(
         Entity,
-        (&Mass, Option<&FictitiousMass>),
+        (&Mass, Option<&InertialMass>),
         &DisplacementIncrement,
         &ConstrainedAxes,
         Option<&Work>,

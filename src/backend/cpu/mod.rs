@@ -15,6 +15,7 @@ pub use element_kernel::{BlockColumns, IN_CACHE, PatchInterior, kernel_effects, 
 pub use guard_kernel::{BlockSums, GuardColumns, run_guard};
 pub use law::BlockLaw;
 pub use law_copies::{LawCopies, LawParameters, PerCopyLaw};
+pub(crate) use node_kernel::loads;
 pub use node_kernel::{Foreseen, IntegrationCoefficients, NodeColumns, NodeShare, OwnRows, Touches, move_nodes};
 pub use own_kernels::OwnKernels;
 pub use strain_kernel::{Kept, Strain, StrainColumns, Visit, strains};
