@@ -79,8 +79,12 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
         scratch.sums[..patch_local.nodes.len()].fill([T::default(); 4]);
         if const { EFFECTS & FROM_PLACES != 0 } {
             for (row, place) in scratch.places.iter_mut().zip(patch_local.places) {
-                let [x, y, z] = place.map(|number| T::from_f64(f64::from(number)));
-                *row = [x, y, z, T::default()];
+                macro_rules! number {
+                    ($axis:literal) => {
+                        T::from_f64(f64::from(place[$axis]))
+                    };
+                }
+                *row = [number!(0), number!(1), number!(2), T::default()];
             }
         }
     }
@@ -112,15 +116,15 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
             };
         }
         let (a, b, c) = (from_x!(a), from_x!(b), from_x!(c));
-        let cofactors = [cross(b, c), cross(c, a), cross(a, b)];
-        let scale = x[0].constant(factor) / dot(a, cofactors[0]);
-        let mut gradients = [scale; GRADIENTS];
-        for (i, cofactors) in cofactors.iter().enumerate() {
-            for (j, &cofactor) in cofactors.iter().enumerate() {
-                gradients[3 * i + j] = cofactor * scale;
-            }
+        let [bc, ca, ab] = [cross(b, c), cross(c, a), cross(a, b)];
+        let scale = x[0].constant(factor) / dot(a, bc);
+        // written out, not a loop: what a loop fills compilers leave in memory
+        macro_rules! scaled {
+            ($($cofactors:ident),*) => {
+                [$($cofactors[0] * scale, $cofactors[1] * scale, $cofactors[2] * scale),*]
+            };
         }
-        Some(gradients)
+        Some(scaled!(bc, ca, ab))
     }
 
     /// The patch-local sums of forces: to the nodes inside that move now, all others to where patches are gathered.
