@@ -33,7 +33,7 @@ pub fn describe(plan: &Plan, systems: &[&System], sizes: &Sizes, world: &mut Wor
     for (kernels, pass) in kernels.iter().zip(plan.passes(true)) {
         for kernel in kernels {
             let systems = match pass.over == Over::Nodes && !kernel.systems.is_empty() {
-                true => kernel.systems.clone(),
+                true => kernel.systems.iter().map(ToString::to_string).collect(),
                 false => vec![plan.systems[pass.systems[0]].name.clone()],
             };
             let times = pass.repeat.as_ref().filter(|_| kernel.repeated).map_or(1, |repeat| repeat.times);
