@@ -1,5 +1,5 @@
-// Hooke's law in the strain E that the law's own kinematics find, Green's or a small one, for `elastic` with `shear` and
-// `bulk`; of st_venant_kirchhoff.wgsl, linear.wgsl and corotational_frame.wgsl.
+// Hooke's law in the strain E that the law's own kinematics find, Green's or a small one, for `elastic` with `shear`
+// and `bulk`; of st_venant_kirchhoff.wgsl, linear.wgsl and corotational_frame.wgsl.
 // 2μ dev E (Pa)
 fn elastic_isochoric(k: Kinematics) -> Sym3 {
     return sym_scaled(sym_deviator(k.green_strain), 2.0 * elastic.shear);

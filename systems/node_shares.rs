@@ -82,7 +82,8 @@ pub(crate) fn give_shares<'a>(
 ) -> Result<(), Error> {
     let mut of_bodies: BTreeMap<Entity, (usize, u32)> = BTreeMap::new();
     for (name, system) in systems {
-        let wanted = system.wanted_shares(duration, world).map_err(|[row, nodes]| no_row(name, "is for", row, nodes))?;
+        let wanted =
+            system.wanted_shares(duration, world).map_err(|[row, nodes]| no_row(name, "is for", row, nodes))?;
         for WantedShare { caller, body, numbers, rows } in wanted {
             let (first, choosing) = of_bodies.entry(body).or_default();
             let mut share = NodeShare { first: *first, numbers, bit: 0 };

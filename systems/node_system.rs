@@ -264,8 +264,8 @@ impl NodeRows {
         (self.energy)(self.of, world)
     }
 
-    /// What it would have of bodies for itself, in a scene that lasts so long (s); else a row that it is for and that is
-    /// none, and how many there are.
+    /// What it would have of bodies for itself, in a scene that lasts so long (s); else a row that it is for and that
+    /// is none, and how many there are.
     pub(super) fn wanted_shares(&self, duration: f64, world: &mut World) -> Result<Vec<WantedShare>, [usize; 2]> {
         (self.wanted_shares)(self.of, duration, world)
     }

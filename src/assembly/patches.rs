@@ -1,12 +1,11 @@
 //! Cutting blocks into patches, and where element forces stand.
 
 use crate::components::*;
-use crate::elements::{Element, node_count, with_element_of};
+use crate::elements::node_count;
 use crate::math::LANES;
 use crate::math::lane_place;
 use crate::mesh::ElementKind;
 use bevy_ecs::prelude::*;
-use glam::DVec3;
 
 /// Neighbours of a block, patch by patch, in the order in which they are stored: the lanes of a group come from all
 /// over the patch, so that they seldom share a node and need not wait for each other's sums.

@@ -1,6 +1,8 @@
 //! What a scene gives a system as its parameters, as a shader has them: a uniform laid out by the types of the members.
 
-use serde::ser::{Error as _, Impossible, Serialize, SerializeStruct, SerializeTuple, SerializeTupleStruct, Serializer};
+use serde::ser::{
+    Error as _, Impossible, Serialize, SerializeStruct, SerializeTuple, SerializeTupleStruct, Serializer,
+};
 use std::fmt::{Display, Formatter, Write};
 
 /// The declaration of a uniform `parameters`, and its bytes, each member on a multiple of 16; both empty where there

@@ -53,7 +53,7 @@ fn hold() -> System {
 fn rows_that_are_none() {
     begun(hold(), r#""hold": (rows: [0, 26])"#).unwrap();
     for row in [27, u32::MAX] {
-        let wrong = begun(hold(), &format!(r#""hold": (rows: [0, {row}])"#)).unwrap_err();
+        let wrong = begun(hold(), &format!(r#""hold": (rows: [0, {row}])"#)).err().unwrap();
         assert_eq!(wrong, format!("`hold` is for the node of row {row}, and the body has 27 rows, from 0"));
     }
 }
@@ -61,7 +61,7 @@ fn rows_that_are_none() {
 #[test]
 fn parameters_that_a_shader_cannot_have() {
     let system = hold().with_shader::<Hold>("hold.wgsl", "fn hold(node: u32) {}");
-    let wrong = begun(system, r#""hold": (rows: [0])"#).unwrap_err();
+    let wrong = begun(system, r#""hold": (rows: [0])"#).err().unwrap();
     let said = "the parameters of `hold` do not fit: `rows`: a list of any length is nothing that a shader can have";
     assert!(wrong.contains(said), "{wrong}");
     assert!(wrong.contains("hold.ron:6"), "{wrong}");
