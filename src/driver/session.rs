@@ -5,6 +5,7 @@ use super::grabs::Hands;
 use super::look::Look;
 use super::pace::Pace;
 use super::state::{Picked, Refusal, State};
+use crate::assembly::element_step;
 use crate::components::{Authoring, Block, Label};
 use crate::error::Error;
 use crate::{Ended, Options, SceneFile, Simulation};
@@ -158,9 +159,10 @@ impl Session {
                 self.running = false;
                 run.simulation.advance(count)?;
             }
-            Command::Reset | Command::Rewind(_) => {
-                match command {
-                    Command::Rewind(to) => run.simulation.rewind(to).map(drop)?,
+            Command::Reset | Command::Rewind(_) | Command::Restore(_) => {
+                match &command {
+                    Command::Rewind(to) => run.simulation.rewind(*to).map(drop)?,
+                    Command::Restore(snapshot) => run.simulation.restore(snapshot)?,
                     _ => run.simulation.reset()?,
                 }
                 run.hands.all_open(&mut run.simulation)?;
@@ -206,6 +208,7 @@ fn name_of(command: &Command) -> &'static str {
         Command::Step(_) => "step",
         Command::Speed(_) => "speed",
         Command::Reset | Command::Rewind(_) => "reset",
+        Command::Restore(_) => "restore",
         Command::Set(_) => "set",
         Command::Input { .. } => "input",
         Command::Grab { .. } | Command::MoveGrab { .. } | Command::Release { .. } => "grab",
@@ -226,9 +229,13 @@ fn picked(simulation: &mut Simulation, origin: DVec3, direction: DVec3) -> Resul
     let world = simulation.world();
     let Some(authoring) = world.get::<Authoring>(body) else { return Ok(None) };
     let element = (0..authoring.cells.len()).find(|place| authoring.element_ids.of(*place) == pick.element);
-    let block = element.and_then(|place| authoring.blocks.get(authoring.element_rows.get(place)?.0 as usize));
-    let material = block.and_then(|block| world.get::<Label>(world.get::<Block>(*block)?.material));
+    let at = element.and_then(|place| {
+        let (block, row) = *authoring.element_rows.get(place)?;
+        Some((*authoring.blocks.get(block as usize)?, row as usize))
+    });
+    let material = at.and_then(|(block, _)| world.get::<Label>(world.get::<Block>(block)?.material));
     let material = material.map(|label| label.0.clone()).unwrap_or_default();
+    let step = at.and_then(|(block, row)| element_step(world, block, row));
     let node_number = authoring.node_ids.of(node as usize);
-    Ok(Some(Picked { node, node_number, element: element.unwrap_or(0), material, pick }))
+    Ok(Some(Picked { node, node_number, element: element.unwrap_or(0), material, step, pick }))
 }
