@@ -4,7 +4,7 @@
 use sinew::driver::{Command, Driver, FrameDriver, Session, State};
 use sinew::glam::DVec3;
 use sinew::scene::schema::OutputField;
-use sinew::{BackendChoice, Options, SceneFile};
+use sinew::{BackendChoice, Options, SceneFile, Simulation};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -129,6 +129,12 @@ fn a_state_that_was_kept_elsewhere_is_gone_on_from() {
     assert_eq!((other.state().step, other.state().time), (40, kept.time()));
     other.command(Command::Step(10));
     assert_eq!(bits(&other.state()), wanted);
+    // what has no columns for hands is gone on from without
+    let mut plain = Simulation::new(&scene(FALL), &options()).unwrap();
+    plain.advance(40).unwrap();
+    other.command(Command::Restore(Box::new(plain.snapshot().unwrap())));
+    other.command(Command::Step(10));
+    assert_eq!((other.state().refusal, bits(&other.state())), (None, wanted));
     other.command(Command::Load(coarse(FALL)));
     other.command(Command::Restore(Box::new(kept)));
     let state = other.state();

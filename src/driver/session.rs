@@ -8,7 +8,7 @@ use super::state::{Picked, Refusal, State};
 use crate::assembly::element_step;
 use crate::components::{Authoring, Block, Label};
 use crate::error::Error;
-use crate::{Ended, Options, SceneFile, Simulation};
+use crate::{Ended, Options, SceneFile, Simulation, Snapshot};
 use glam::DVec3;
 use std::time::Duration;
 
@@ -29,6 +29,8 @@ pub struct Session {
 /// A scene at work.
 struct Run {
     simulation: Simulation,
+    /// Whether hands can hold something.
+    grabs: bool,
     hands: Hands,
     picked: Option<Picked>,
     /// Whether it goes on where the scene ends.
@@ -36,7 +38,8 @@ struct Run {
 }
 
 impl Session {
-    /// A session without a scene. What is loaded can be grabbed, whatever the options say.
+    /// A session without a scene. What is loaded can be grabbed, whatever the options say; what is restored, if it could
+    /// be where it was kept.
     pub fn new(options: Options) -> Self {
         let options = Options { grabs: true, ..options };
         let look = Look::default();
@@ -159,16 +162,14 @@ impl Session {
                 self.running = false;
                 run.simulation.advance(count)?;
             }
-            Command::Reset | Command::Rewind(_) | Command::Restore(_) => {
-                match &command {
-                    Command::Rewind(to) => run.simulation.rewind(*to).map(drop)?,
-                    Command::Restore(snapshot) => run.simulation.restore(snapshot)?,
+            Command::Reset | Command::Rewind(_) => {
+                match command {
+                    Command::Rewind(to) => run.simulation.rewind(to).map(drop)?,
                     _ => run.simulation.reset()?,
                 }
-                run.hands.all_open(&mut run.simulation)?;
-                (run.beyond, run.picked) = (false, None);
-                self.pace.stand(run.simulation.time());
+                self.stand()?;
             }
+            Command::Restore(snapshot) => self.restore(&snapshot)?,
             Command::Set(sets) => run.simulation.change(&sets)?,
             Command::Input { name, value } => run.simulation.set_input(&name, value)?,
             Command::Grab { hand, origin, direction } => {
@@ -182,15 +183,43 @@ impl Session {
         Ok(())
     }
 
+    /// Over to a state that was kept elsewhere, where hands can hold something if they could there.
+    fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Error> {
+        let (Some(run), Some(scene)) = (&mut self.run, self.look.scene()) else { return Ok(()) };
+        let grabs = Simulation::can_grab_in(snapshot)?;
+        if run.grabs == grabs {
+            run.simulation.restore(snapshot)?;
+        } else {
+            let mut simulation = Simulation::new(&scene, &Options { grabs, ..self.options.clone() })?;
+            simulation.restore(snapshot)?;
+            self.begin(&scene, simulation, grabs)?;
+        }
+        self.stand()
+    }
+
+    /// Stands in a state without hands that hold something.
+    fn stand(&mut self) -> Result<(), Error> {
+        let Some(run) = &mut self.run else { return Ok(()) };
+        run.hands.all_open(&mut run.simulation)?;
+        (run.beyond, run.picked) = (false, None);
+        self.pace.stand(run.simulation.time());
+        Ok(())
+    }
+
     fn load(&mut self, scene: &SceneFile) -> Result<(), Error> {
-        let mut simulation = Simulation::new(scene, &self.options)?;
+        let simulation = Simulation::new(scene, &self.options)?;
+        self.begin(scene, simulation, self.options.grabs)
+    }
+
+    /// Begins with a simulation of a scene; `grabs`: whether hands can hold something in it.
+    fn begin(&mut self, scene: &SceneFile, mut simulation: Simulation, grabs: bool) -> Result<(), Error> {
         if !scene.scene.is_static() {
             // with less, time cannot be gone back but to the start
             let _ = simulation.keep_history(scene.scene.duration / KEPT.0, KEPT.1);
         }
         self.look.begin(scene, &mut simulation)?;
         self.pace.stand(simulation.time());
-        self.run = Some(Run { simulation, hands: Hands::default(), picked: None, beyond: false });
+        self.run = Some(Run { simulation, grabs, hands: Hands::default(), picked: None, beyond: false });
         Ok(())
     }
 }
