@@ -25,6 +25,11 @@ fn a_body_is_a_mesh_that_moves_and_has_normals() {
 }
 
 #[test]
+fn the_example_tells_of_its_cube() {
+    cube::main();
+}
+
+#[test]
 fn normals_point_out_of_the_body() {
     let mut app = app();
     let scene = spawn(&mut app, BAR);

@@ -4,6 +4,8 @@
 
 mod assets;
 mod bodies;
+#[path = "../../examples/cube.rs"]
+mod cube;
 mod gizmos;
 mod hands;
 mod time;

@@ -1,0 +1,34 @@
+//! A cube of tissue in an app without a window: how high its top is while it sags.
+//!
+//! `cargo run -p sinew-bevy --example cube`
+
+use bevy_app::{App, Last, TaskPoolPlugin};
+use bevy_asset::{AssetPlugin, Assets};
+use bevy_ecs::prelude::*;
+use bevy_mesh::{Mesh, Mesh3d, MeshPlugin, VertexAttributeValues};
+use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy};
+use bevy_transform::TransformPlugin;
+use sinew_bevy::{SceneText, SinewPlugin, SoftBody, SoftScene, z_up};
+
+const CUBE: &str = include_str!("../../../scenes/cube_under_gravity.ron");
+
+/// Half a second of the cube, a tick each update.
+pub fn main() {
+    let mut app = App::new();
+    let parts = (TaskPoolPlugin::default(), TimePlugin, AssetPlugin::default(), TransformPlugin, MeshPlugin);
+    app.add_plugins((parts, SinewPlugin)).add_systems(Last, tell);
+    app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
+    let cube = app.world_mut().resource_mut::<Assets<SceneText>>().add(SceneText::new("cube", CUBE));
+    app.world_mut().spawn((SoftScene(cube), z_up()));
+    (0..32).for_each(|_| app.update());
+}
+
+/// Says where the highest vertex is. Meshes have the scene's axes: z goes up.
+pub fn tell(time: Res<Time<Fixed>>, bodies: Query<(&SoftBody, &Mesh3d)>, meshes: Res<Assets<Mesh>>) {
+    for (body, mesh) in &bodies {
+        let positions = meshes.get(&mesh.0).and_then(|mesh| mesh.attribute(Mesh::ATTRIBUTE_POSITION));
+        let Some(VertexAttributeValues::Float32x3(positions)) = positions else { continue };
+        let top = positions.iter().map(|place| place[2]).fold(f32::MIN, f32::max);
+        println!("t = {:.3} s: the {} is {:.1} mm high", time.elapsed_secs_f64(), body.name, 1e3 * top);
+    }
+}
