@@ -12,19 +12,25 @@ use sinew_bevy::{SceneText, SinewPlugin, SoftBody, SoftScene, z_up};
 
 const CUBE: &str = include_str!("../../../scenes/cube_under_gravity.ron");
 
-/// Half a second of the cube, a tick each update.
-pub fn main() {
-    let mut app = App::new();
-    let parts = (TaskPoolPlugin::default(), TimePlugin, AssetPlugin::default(), TransformPlugin, MeshPlugin);
-    app.add_plugins((parts, SinewPlugin)).add_systems(Last, tell);
-    app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
-    let cube = app.world_mut().resource_mut::<Assets<SceneText>>().add(SceneText::new("cube", CUBE));
-    app.world_mut().spawn((SoftScene(cube), z_up()));
+fn main() {
+    let (mut app, _) = app();
+    app.add_systems(Last, tell);
     (0..32).for_each(|_| app.update());
 }
 
+/// The app, and the entity of the scene: each update is a tick.
+pub fn app() -> (App, Entity) {
+    let mut app = App::new();
+    let parts = (TaskPoolPlugin::default(), TimePlugin, AssetPlugin::default(), TransformPlugin, MeshPlugin);
+    app.add_plugins((parts, SinewPlugin));
+    app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
+    let cube = app.world_mut().resource_mut::<Assets<SceneText>>().add(SceneText::new("cube", CUBE));
+    let scene = app.world_mut().spawn((SoftScene(cube), z_up())).id();
+    (app, scene)
+}
+
 /// Says where the highest vertex is. Meshes have the scene's axes: z goes up.
-pub fn tell(time: Res<Time<Fixed>>, bodies: Query<(&SoftBody, &Mesh3d)>, meshes: Res<Assets<Mesh>>) {
+fn tell(time: Res<Time<Fixed>>, bodies: Query<(&SoftBody, &Mesh3d)>, meshes: Res<Assets<Mesh>>) {
     for (body, mesh) in &bodies {
         let positions = meshes.get(&mesh.0).and_then(|mesh| mesh.attribute(Mesh::ATTRIBUTE_POSITION));
         let Some(VertexAttributeValues::Float32x3(positions)) = positions else { continue };

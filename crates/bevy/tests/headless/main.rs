@@ -4,6 +4,7 @@
 
 mod assets;
 mod bodies;
+#[allow(dead_code)]
 #[path = "../../examples/cube.rs"]
 mod cube;
 mod gizmos;
