@@ -44,8 +44,8 @@ pub use relaxation::load_steps;
 pub use renew::renew_materials;
 pub use select::Selection;
 pub use time_step::{
-    CriticalElement, SquaresAtRest, StableStep, alike_in_any_precision, author_of, damped, damping_times,
-    element_step, square_frequencies, stable_step, undamped_square_frequencies,
+    CriticalElement, SquaresAtRest, StableStep, alike_in_any_precision, author_of, damped, damping_times, element_step,
+    square_frequencies, stable_step, undamped_square_frequencies,
 };
 
 use crate::backend::user_law::NamedLaw;

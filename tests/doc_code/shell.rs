@@ -43,7 +43,9 @@ fn call(program: &str, line: &str) -> Option<Vec<String>> {
     let of_cargo = ["cargo", "run", "--release", "--"];
     let after = |place: usize| match &all[place..] {
         [first, ..] if first == program => Some(place + 1),
-        [first, ..] if first == "cargo" && program == "sinew" && all[place..].starts_with(&of_cargo.map(String::from)) => {
+        [first, ..]
+            if first == "cargo" && program == "sinew" && all[place..].starts_with(&of_cargo.map(String::from)) =>
+        {
             Some(place + 4)
         }
         _ => None,

@@ -171,7 +171,8 @@ constraints: [Fixed(on: Set(\"z0\")),
         assert_eq!(told(2, &action.replace('V', &even)), "", "{action}");
         let askew = format!("(0, 0, -{number})");
         let found = told(2, &action.replace('V', &askew));
-        let wanted = format!("`Directions` multiplies {askew} component by component: that does not turn it | {even} is");
+        let wanted =
+            format!("`Directions` multiplies {askew} component by component: that does not turn it | {even} is");
         assert!(found.contains(&format!("warning: {wanted}")) && found.lines().count() == 1, "{action}: {found}");
     }
     let turned =

@@ -48,7 +48,8 @@ impl Traces {
     /// given by names and numbers with units; what is no number is empty.
     pub fn table<'a>(&self, probes: impl Iterator<Item = (&'a str, &'a [String])>) -> String {
         let energies = ENERGIES.iter().map(|name| format!("{name} (J)"));
-        let of_probes = probes.flat_map(|(probe, numbers)| numbers.iter().map(move |number| format!("{probe} {number}")));
+        let of_probes =
+            probes.flat_map(|(probe, numbers)| numbers.iter().map(move |number| format!("{probe} {number}")));
         let heads = std::iter::once("t (s)".to_string()).chain(energies).chain(of_probes);
         let quoted = |head: String| match head.contains([',', '"', '\n']) {
             true => format!("\"{}\"", head.replace('"', "\"\"")),

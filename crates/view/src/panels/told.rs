@@ -96,7 +96,8 @@ impl App {
         plots.extend(probes.cloned());
         let mut column = 0;
         // those of a finished run are files already
-        if self.source.finished().is_none() && ui.button("Write CSV").on_hover_text("all curves in one table").clicked() {
+        if self.source.finished().is_none() && ui.button("Write CSV").on_hover_text("all curves in one table").clicked()
+        {
             self.write_table();
         }
         ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {
