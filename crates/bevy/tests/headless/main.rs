@@ -9,6 +9,7 @@ mod bodies;
 mod cube;
 mod gizmos;
 mod hands;
+mod page;
 mod time;
 
 use bevy_app::{App, TaskPoolPlugin};
