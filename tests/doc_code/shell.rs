@@ -18,7 +18,7 @@ pub fn calls(program: &str) -> Vec<(String, Vec<String>)> {
         let found = lines(&text).into_iter().filter_map(|line| call(program, &line));
         all.extend(found.map(|words| (name.clone(), words)));
     }
-    all.sort();
+    all.sort_by(|a: &(String, Vec<String>), b| a.1.cmp(&b.1));
     all.dedup_by(|a, b| a.1 == b.1);
     all
 }
