@@ -11,6 +11,7 @@ use sinew::{BackendChoice, Error, Grip, Host, Options, SceneFile, Simulation};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
+#[rustfmt::skip]
 fn inputs(mut simulation: Simulation) -> Result<(), Error> {
     // curve: Input(name: "tool", initial: 0, rate: 50) in the scene
     simulation.set_input("tool", 0.3)?;
@@ -21,6 +22,7 @@ fn inputs(mut simulation: Simulation) -> Result<(), Error> {
     Ok(())
 }
 
+#[rustfmt::skip]
 fn tools(mut simulation: Simulation) -> Result<(), Error> {
     // tools: {"probe": (shape: Capsule(length: 0.05, radius: 4e-3), at: (0, 0, 1e-3),
     //     moves: [(displacement: (0, 0, -5e-3), curve: Input(name: "depth", rate: 20))])} in the scene
@@ -31,6 +33,7 @@ fn tools(mut simulation: Simulation) -> Result<(), Error> {
     Ok(())
 }
 
+#[rustfmt::skip]
 fn a_hand(mut simulation: Simulation) -> Result<(), Error> {
     fn read_device() -> (DVec3, DVec3, f64) {
         (DVec3::ZERO, DVec3::ZERO, 0.0)
@@ -64,6 +67,7 @@ extern "C" fn tick(place: &[f64; 3], velocity: &[f64; 3], force: &mut [f64; 3]) 
     *force = coupling.force(&port.touch(), place, velocity, time).to_array();
 }
 
+#[rustfmt::skip]
 fn materials_and_loads(mut simulation: Simulation) -> Result<(), Error> {
     simulation.change(&[
         "materials.liver.neo_hookean=Young(young: 5e3, poisson: 0.45)".into(),
@@ -72,6 +76,7 @@ fn materials_and_loads(mut simulation: Simulation) -> Result<(), Error> {
     Ok(())
 }
 
+#[rustfmt::skip]
 fn picking_and_grabbing(scene: SceneFile, eye: DVec3, direction: DVec3) -> Result<(), Error> {
     let options = Options { grabs: true, ..Options::default() };
     let mut simulation = Simulation::new(&scene, &options)?;
@@ -85,6 +90,7 @@ fn picking_and_grabbing(scene: SceneFile, eye: DVec3, direction: DVec3) -> Resul
     Ok(())
 }
 
+#[rustfmt::skip]
 fn a_driver(eye: DVec3, direction: DVec3) -> Result<(), Error> {
     fn wake_the_window() {}
     fn draw(_: &[[f32; 3]], _: &[f32]) {}
@@ -99,6 +105,7 @@ fn a_driver(eye: DVec3, direction: DVec3) -> Result<(), Error> {
     Ok(())
 }
 
+#[rustfmt::skip]
 fn a_programs_own_device(adapter: wgpu::Adapter, scene: SceneFile, until: f64) -> Result<(), Box<dyn std::error::Error>> {
     fn bind(_: wgpu::Buffer, _: std::ops::Range<u64>, _: Vec<u32>) {}
     fn draw() {}

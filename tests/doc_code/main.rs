@@ -4,11 +4,8 @@
 // what is shown is not run here, and is written as the pages have it
 #![allow(dead_code, unused_variables, unused_mut, unused_imports, missing_docs)]
 
-#[rustfmt::skip]
 mod interaction;
-#[rustfmt::skip]
 mod laws;
-#[rustfmt::skip]
 mod systems;
 
 /// Pages, and the file of each.

@@ -1,5 +1,6 @@
 //! The Rust of docs/systems.md, and what README.md shows of it.
 
+#[rustfmt::skip]
 mod parameters {
     use sinew::prelude::*;
 
@@ -8,6 +9,7 @@ mod parameters {
     struct Magnet { acceleration: f64 }
 }
 
+#[rustfmt::skip]
 mod of_nodes {
     use sinew::prelude::*;
     use sinew::systems::{Before, Cpu, ForceSlopes, NodeColumns, NodeSystem, NodesAtRest, SimdScalar};
@@ -61,6 +63,7 @@ mod of_nodes {
     }
 }
 
+#[rustfmt::skip]
 mod on_the_host {
     use sinew::prelude::*;
 
@@ -100,6 +103,7 @@ mod on_the_host {
     }
 }
 
+#[rustfmt::skip]
 mod slopes {
     use sinew::prelude::*;
     use sinew::systems::ForceSlopes;
@@ -128,6 +132,7 @@ mod slopes {
     }
 }
 
+#[rustfmt::skip]
 mod chosen_nodes {
     use sinew::prelude::*;
 
@@ -145,6 +150,7 @@ mod chosen_nodes {
     }
 }
 
+#[rustfmt::skip]
 mod readme {
     use sinew::prelude::*;
 
