@@ -157,11 +157,11 @@ mod readme {
     #[derive(Resource, serde::Deserialize)]
     struct Wind;
 
-    fn registered(scene: SceneFile) -> Result<(), Error> {
+    fn registered(scene: SceneFile, options: Options) -> Result<(), Error> {
         fn wind(wind: Res<Wind>, mut bodies: Query<(&Mass, &mut ExternalForce)>) { /* ... */ }
 
         let system = System::custom("wind", Phase::Loads, "blows", wind).with_parameters::<Wind>();
-        let mut simulation = Simulation::with_systems(&scene, &Options::default(), &Registry::default().with(system))?;
+        let mut simulation = Simulation::with_systems(&scene, &options, &Registry::default().with(system))?;
         Ok(())
     }
 }

@@ -166,13 +166,13 @@ fn a_picture_is_seen_on_a_skin_at_its_texture_coordinates() {
     let colour = |image: &Image, part: usize| {
         let is = |pixel: &[u8; 3]| (0..3).all(|other| other == part || pixel[part] > pixel[other].saturating_add(30));
         let found = image.pixels.iter().enumerate().filter(|(_, pixel)| is(pixel));
-        let (sum, count) = found.fold((0, 0), |(sum, count), (place, _)| (sum + place % image.width, count + 1));
+        let (sum, count) = found.fold((0, 0u32), |(sum, count), (place, _)| (sum + place % image.width, count + 1));
         (sum as f64 / f64::from(count.max(1)), count)
     };
     let [seen, _] = both(&mut scene3d, &state, &Settings::default(), &above);
     let ((green, some), (blue, others)) = (colour(&seen, 1), colour(&seen, 2));
     // x goes to the right, seen from above, and the square's halves are alike
-    assert!(green < blue && some > 5000 && (some - others).abs() < some / 5, "{green} {some} {blue} {others}");
+    assert!(green < blue && some > 5000 && some.abs_diff(others) < some / 5, "{green} {some} {blue} {others}");
     let [bare, _] = both(&mut scene3d, &state, &Settings { skins: false, ..Settings::default() }, &above);
     assert_eq!((colour(&bare, 1).1, colour(&bare, 2).1), (0, 0));
     // a picture that is not there is told, and the skin is drawn without
