@@ -84,7 +84,7 @@ def test_who_has_no_viewer_is_told_how_to_get_it(cube: sinew.Scene, monkeypatch:
 
 def test_a_notebook_shows_a_picture(simulation: sinew.Simulation, monkeypatch: pytest.MonkeyPatch) -> None:
     kernel = types.SimpleNamespace(kernel=object())
-    monkeypatch.setitem(sys.modules, "IPython", types.SimpleNamespace(get_ipython=lambda: kernel))  # type: ignore[misc]
+    monkeypatch.setitem(sys.modules, "IPython", types.SimpleNamespace(get_ipython=lambda: kernel))
     for field in (None, "von_mises"):
         picture = sinew.view(simulation, field=field)
         assert picture is not None and picture.png.startswith(b"\x89PNG")
