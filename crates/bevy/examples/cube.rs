@@ -8,7 +8,8 @@ use bevy_ecs::prelude::*;
 use bevy_mesh::{Mesh, Mesh3d, MeshPlugin, VertexAttributeValues};
 use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy};
 use bevy_transform::TransformPlugin;
-use sinew_bevy::{SceneText, SinewPlugin, SoftBody, SoftScene, z_up};
+use sinew_bevy::{SceneText, SinewClock, SinewPlugin, SoftBody, SoftScene, z_up};
+use std::time::Duration;
 
 const CUBE: &str = include_str!("../../../scenes/cube_under_gravity.ron");
 
@@ -24,6 +25,8 @@ pub fn app() -> (App, Entity) {
     let parts = (TaskPoolPlugin::default(), TimePlugin, AssetPlugin::default(), TransformPlugin, MeshPlugin);
     app.add_plugins((parts, SinewPlugin));
     app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
+    // nobody waits for a frame: no tick is cut short, however slow the machine
+    app.world_mut().resource_mut::<SinewClock>().budget = Duration::from_secs(60);
     let cube = app.world_mut().resource_mut::<Assets<SceneText>>().add(SceneText::new("cube", CUBE));
     let scene = app.world_mut().spawn((SoftScene(cube), z_up())).id();
     (app, scene)

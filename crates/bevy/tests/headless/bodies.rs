@@ -27,7 +27,6 @@ fn a_body_is_a_mesh_that_moves_and_has_normals() {
 #[test]
 fn the_cube_of_the_example_sags() {
     let (mut app, scene) = cube::app();
-    app.world_mut().resource_mut::<SinewClock>().budget = std::time::Duration::from_secs(60);
     update(&mut app, 2);
     let top = |app: &App| places(app, body(app, scene, "cube")).iter().map(|place| place[2]).fold(f32::MIN, f32::max);
     let before = top(&app);
