@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 // what is shown is not run here, and is written as the pages have it
 #![allow(dead_code, unused_variables, unused_mut, unused_imports, missing_docs)]
+#![allow(clippy::redundant_closure, clippy::let_and_return)]
 
 mod interaction;
 mod laws;
