@@ -4,7 +4,7 @@
 use sinew::driver::{Command, Driver, FrameDriver, Session, State};
 use sinew::glam::DVec3;
 use sinew::scene::schema::OutputField;
-use sinew::{BackendChoice, Options, SceneFile};
+use sinew::{BackendChoice, Options, SceneFile, Simulation};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -15,6 +15,12 @@ const AMPLE: Duration = Duration::from_secs(20);
 
 fn scene(further: &str) -> Box<SceneFile> {
     held("", further)
+}
+
+/// The same of eight elements.
+fn coarse(further: &str) -> Box<SceneFile> {
+    let cells = ["bodies.b.mesh.cells=(2, 2, 2)".to_string()];
+    Box::new(SceneFile::from_text("test.ron", scene(further).text(), Path::new(""), &cells).unwrap())
 }
 
 /// Held below, and by more constraints.
@@ -105,6 +111,34 @@ fn a_pause_keeps_the_bits_and_back_at_the_start_they_are_those_of_the_first_run(
     session.command(Command::Rewind(0.0301));
     assert!((session.state().time - 0.03).abs() < 1e-9, "{}", session.state().time);
     assert_eq!(bits(&session.state()), before);
+}
+
+#[test]
+fn a_state_that_was_kept_elsewhere_is_gone_on_from() {
+    let mut session = session(FALL);
+    session.command(Command::Step(40));
+    let kept = session.simulation().unwrap().snapshot().unwrap();
+    session.command(Command::Step(10));
+    let wanted = bits(&session.state());
+    let (origin, direction) = (DVec3::new(0.05, 0.05, 1.0), DVec3::NEG_Z);
+    let mut other = Session::new(options());
+    other.command(Command::Load(scene(FALL)));
+    other.command(Command::Grab { hand: 1, origin, direction });
+    other.command(Command::Restore(Box::new(kept.clone())));
+    assert!(other.state().refusal.is_none() && other.state().held.is_empty());
+    assert_eq!((other.state().step, other.state().time), (40, kept.time()));
+    other.command(Command::Step(10));
+    assert_eq!(bits(&other.state()), wanted);
+    // what has no columns for hands is gone on from without
+    let mut plain = Simulation::new(&scene(FALL), &options()).unwrap();
+    plain.advance(40).unwrap();
+    other.command(Command::Restore(Box::new(plain.snapshot().unwrap())));
+    other.command(Command::Step(10));
+    assert_eq!((other.state().refusal, bits(&other.state())), (None, wanted));
+    other.command(Command::Load(coarse(FALL)));
+    other.command(Command::Restore(Box::new(kept)));
+    let state = other.state();
+    assert_eq!((state.refusal.map(|refusal| refusal.command), state.step), (Some("restore"), 0));
 }
 
 #[test]
@@ -273,6 +307,13 @@ fn states_have_arrows_materials_sets_and_the_elements_that_set_the_step() {
     assert_eq!((about.materials.as_slice(), about.element_materials.len()), (&["m".to_string()][..], 27));
     assert!((1..=10).contains(&loaded.critical.len()));
     assert!(loaded.critical.iter().all(|critical| critical.body == "b" && critical.bound >= 1e-3));
+    // of so few elements all are listed, that which is picked among them
+    session.command(Command::Load(coarse(FALL)));
+    session.command(Command::Pick { origin: DVec3::new(0.03, 0.03, 1.0), direction: DVec3::NEG_Z });
+    let state = session.state();
+    let (picked, critical) = (state.picked.unwrap(), &state.loaded.as_ref().unwrap().critical);
+    let listed = critical.iter().find(|critical| critical.element == picked.pick.element).unwrap();
+    assert_eq!((critical.len(), picked.step), (8, Some(listed.bound)));
     session.command(Command::Arrows(Some(OutputField::VonMises)));
     assert!(session.state().refusal.unwrap().reason.contains("von_mises has no vectors of nodes"));
 }

@@ -149,6 +149,17 @@ pub fn undamped_square_frequencies(world: &World, entity: Entity) -> Vec<(f64, f
     world.resource::<Cpu>().confine(|| (0..block.count).into_par_iter().map(of_row).collect())
 }
 
+/// The stable step of one element of a block, by its row: 2/ω of its bound (s), with its damping; none of a removed one.
+pub fn element_step(world: &World, entity: Entity, row: usize) -> Option<f64> {
+    let block = world.get::<Block>(entity)?;
+    let (frequency, shape) = (square_frequency(world, entity, block)?, world.get::<RestShape>(entity)?);
+    if rest_volume(block, row, shape) <= 0.0 {
+        return None;
+    }
+    let square = damped(frequency(row), damping_time_of(world, entity)(row));
+    (square > 0.0).then(|| 2.0 / square.sqrt())
+}
+
 /// A number with the digits that f32 has.
 fn short(number: f64) -> f64 {
     f64::from(number as f32)

@@ -1,7 +1,7 @@
 //! What can be asked of a simulation while it runs.
 
-use crate::SceneFile;
 use crate::scene::schema::OutputField;
+use crate::{SceneFile, Snapshot};
 use glam::DVec3;
 
 /// What can be asked of a [`Session`](super::Session).
@@ -19,6 +19,8 @@ pub enum Command {
     Reset,
     /// Back to the last state kept that is not later than a time (s).
     Rewind(f64),
+    /// Over to a state of the same scene that was kept elsewhere: [`Simulation::restore`](crate::Simulation::restore).
+    Restore(Box<Snapshot>),
     /// Change parameters by the words of `--set`: [`Simulation::change`](crate::Simulation::change).
     Set(Vec<String>),
     /// Set an input of the scene.

@@ -49,6 +49,11 @@ struct Measured {
 }
 
 impl Look {
+    /// The scene that is looked at.
+    pub fn scene(&self) -> Option<SceneFile> {
+        self.loaded.as_ref().map(|loaded| loaded.scene.clone())
+    }
+
     /// Begins to look at a scene.
     pub fn begin(&mut self, scene: &SceneFile, simulation: &mut Simulation) -> Result<(), Error> {
         let bodies = scene.scene.bodies.keys().map(|name| body(name, simulation)).collect::<Result<_, _>>()?;

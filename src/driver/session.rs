@@ -5,9 +5,10 @@ use super::grabs::Hands;
 use super::look::Look;
 use super::pace::Pace;
 use super::state::{Picked, Refusal, State};
+use crate::assembly::element_step;
 use crate::components::{Authoring, Block, Label};
 use crate::error::Error;
-use crate::{Ended, Options, SceneFile, Simulation};
+use crate::{Ended, Options, SceneFile, Simulation, Snapshot};
 use glam::DVec3;
 use std::time::Duration;
 
@@ -28,6 +29,8 @@ pub struct Session {
 /// A scene at work.
 struct Run {
     simulation: Simulation,
+    /// Whether hands can hold something.
+    grabs: bool,
     hands: Hands,
     picked: Option<Picked>,
     /// Whether it goes on where the scene ends.
@@ -35,7 +38,8 @@ struct Run {
 }
 
 impl Session {
-    /// A session without a scene. What is loaded can be grabbed, whatever the options say.
+    /// A session without a scene. What is loaded can be grabbed, whatever the options say; what is restored, if it could
+    /// be where it was kept.
     pub fn new(options: Options) -> Self {
         let options = Options { grabs: true, ..options };
         let look = Look::default();
@@ -163,10 +167,9 @@ impl Session {
                     Command::Rewind(to) => run.simulation.rewind(to).map(drop)?,
                     _ => run.simulation.reset()?,
                 }
-                run.hands.all_open(&mut run.simulation)?;
-                (run.beyond, run.picked) = (false, None);
-                self.pace.stand(run.simulation.time());
+                self.stand()?;
             }
+            Command::Restore(snapshot) => self.restore(&snapshot)?,
             Command::Set(sets) => run.simulation.change(&sets)?,
             Command::Input { name, value } => run.simulation.set_input(&name, value)?,
             Command::Grab { hand, origin, direction } => {
@@ -180,15 +183,43 @@ impl Session {
         Ok(())
     }
 
+    /// Over to a state that was kept elsewhere, where hands can hold something if they could there.
+    fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Error> {
+        let (Some(run), Some(scene)) = (&mut self.run, self.look.scene()) else { return Ok(()) };
+        let grabs = Simulation::can_grab_in(snapshot)?;
+        if run.grabs == grabs {
+            run.simulation.restore(snapshot)?;
+        } else {
+            let mut simulation = Simulation::new(&scene, &Options { grabs, ..self.options.clone() })?;
+            simulation.restore(snapshot)?;
+            self.begin(&scene, simulation, grabs)?;
+        }
+        self.stand()
+    }
+
+    /// Stands in a state without hands that hold something.
+    fn stand(&mut self) -> Result<(), Error> {
+        let Some(run) = &mut self.run else { return Ok(()) };
+        run.hands.all_open(&mut run.simulation)?;
+        (run.beyond, run.picked) = (false, None);
+        self.pace.stand(run.simulation.time());
+        Ok(())
+    }
+
     fn load(&mut self, scene: &SceneFile) -> Result<(), Error> {
-        let mut simulation = Simulation::new(scene, &self.options)?;
+        let simulation = Simulation::new(scene, &self.options)?;
+        self.begin(scene, simulation, self.options.grabs)
+    }
+
+    /// Begins with a simulation of a scene; `grabs`: whether hands can hold something in it.
+    fn begin(&mut self, scene: &SceneFile, mut simulation: Simulation, grabs: bool) -> Result<(), Error> {
         if !scene.scene.is_static() {
             // with less, time cannot be gone back but to the start
             let _ = simulation.keep_history(scene.scene.duration / KEPT.0, KEPT.1);
         }
         self.look.begin(scene, &mut simulation)?;
         self.pace.stand(simulation.time());
-        self.run = Some(Run { simulation, hands: Hands::default(), picked: None, beyond: false });
+        self.run = Some(Run { simulation, grabs, hands: Hands::default(), picked: None, beyond: false });
         Ok(())
     }
 }
@@ -206,6 +237,7 @@ fn name_of(command: &Command) -> &'static str {
         Command::Step(_) => "step",
         Command::Speed(_) => "speed",
         Command::Reset | Command::Rewind(_) => "reset",
+        Command::Restore(_) => "restore",
         Command::Set(_) => "set",
         Command::Input { .. } => "input",
         Command::Grab { .. } | Command::MoveGrab { .. } | Command::Release { .. } => "grab",
@@ -226,9 +258,13 @@ fn picked(simulation: &mut Simulation, origin: DVec3, direction: DVec3) -> Resul
     let world = simulation.world();
     let Some(authoring) = world.get::<Authoring>(body) else { return Ok(None) };
     let element = (0..authoring.cells.len()).find(|place| authoring.element_ids.of(*place) == pick.element);
-    let block = element.and_then(|place| authoring.blocks.get(authoring.element_rows.get(place)?.0 as usize));
-    let material = block.and_then(|block| world.get::<Label>(world.get::<Block>(*block)?.material));
+    let at = element.and_then(|place| {
+        let (block, row) = *authoring.element_rows.get(place)?;
+        Some((*authoring.blocks.get(block as usize)?, row as usize))
+    });
+    let material = at.and_then(|(block, _)| world.get::<Label>(world.get::<Block>(block)?.material));
     let material = material.map(|label| label.0.clone()).unwrap_or_default();
+    let step = at.and_then(|(block, row)| element_step(world, block, row));
     let node_number = authoring.node_ids.of(node as usize);
-    Ok(Some(Picked { node, node_number, element: element.unwrap_or(0), material, pick }))
+    Ok(Some(Picked { node, node_number, element: element.unwrap_or(0), material, step, pick }))
 }

@@ -162,6 +162,9 @@ pub struct Picked {
     pub element: usize,
     /// The element's material.
     pub material: String,
+    /// The largest step (s) that would be stable for the element at the start, by the bound that elements have; none
+    /// where it is not known: of an element that is gone, of a finished run.
+    pub step: Option<f64>,
 }
 
 /// A command that was refused.

@@ -191,6 +191,8 @@ fn what_is_no_skin_is_told() {
     let near = |told: String, expected: &str| assert!(told.contains(expected), "{told}\nexpected {expected}");
     near(told("(file: \"nets.obj\")", ""), "there is no file `nets.obj`");
     near(told("(file: \"net.obj\", scale: 0)", ""), "`scale` must be above 0, found 0");
+    near(told("(file: \"net.obj\", image: \"net.png\")", ""), "there is no file `net.png`");
+    near(told("(file: \"net.obj\", image: \"net.obj\")", ""), "PNG (.png)");
     let unknown = SceneFile::from_memory(
         "s.ron",
         "(bodies: {\"b\": (skin: (file: \"a.obj\", also: Stl))})",

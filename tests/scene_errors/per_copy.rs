@@ -160,6 +160,21 @@ constraints: [Fixed(on: Set(\"z0\")),
     assert_eq!(told(2, &gravity("body: \"b\",")), "");
     assert!(told(2, &gravity("")).contains("error: gravity on all bodies is the same in all copies | name the `body`"));
     assert!(told(1, &pressure("Linear(1, 2)")).contains("error: the body has one copy only"));
+    // what has the same number along all axes is turned by that, other vectors are not
+    for (action, number) in [
+        ("], loads: [Gravity(body: \"b\", acceleration: V, per_copy: Directions())", "3"),
+        ("], loads: [NodalForce(on: Set(\"z1\"), force: V, per_copy: Directions())", "0.003"),
+        ("], loads: [Traction(on: Set(\"z1\"), traction: V, per_copy: Directions())", "0.003"),
+        ("Prescribed(on: Set(\"z1\"), displacement: V, per_copy: Directions(), curve: Smooth(end: 0.1))", "0.003"),
+    ] {
+        let even = format!("({number}, {number}, {number})");
+        assert_eq!(told(2, &action.replace('V', &even)), "", "{action}");
+        let askew = format!("(0, 0, -{number})");
+        let found = told(2, &action.replace('V', &askew));
+        let wanted =
+            format!("`Directions` multiplies {askew} component by component: that does not turn it | {even} is");
+        assert!(found.contains(&format!("warning: {wanted}")) && found.lines().count() == 1, "{action}: {found}");
+    }
     let turned =
         told(2, "Prescribed(on: Set(\"z1\"), rotation: (0, 0, 5), per_copy: Linear(1, 2), curve: Smooth(end: 0.1))");
     assert!(turned.contains("error: a rotation is the same in all copies"), "{turned}");

@@ -76,6 +76,9 @@ fn write(scene: &SceneFile, found: &Unloaded, path: &Path) -> Result<Vec<String>
     for (name, body) in &scene.scene.bodies {
         if let Some(skin) = &body.skin {
             sets.push(format!("bodies.\"{name}\".skin.file=\"{}\"", copies.of(&skin.file, scene, &mut folder)?));
+            if let Some(image) = &skin.image {
+                sets.push(format!("bodies.\"{name}\".skin.image=\"{}\"", copies.of(image, scene, &mut folder)?));
+            }
         }
     }
     for (name, material) in &scene.scene.materials {

@@ -18,9 +18,9 @@ use crate::traces::Traces;
 use eframe::egui_wgpu::RenderState;
 use egui::{CentralPanel, Color32, Key, Rect, Sense, Ui, pos2};
 use glam::Vec3;
-use sinew::Options;
 use sinew::driver::{Command, State};
 use sinew::scene::schema::OutputField;
+use sinew::{Options, Snapshot};
 use sinew_pictures::render::View;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -32,6 +32,8 @@ pub struct Start {
     pub scene: Option<PathBuf>,
     /// Values put into it, as by `--set`.
     pub sets: Vec<String>,
+    /// A state of the scene that it begins with.
+    pub resume: Option<Box<Snapshot>>,
     /// How it runs.
     pub options: Options,
     /// Whether it runs at once.
@@ -136,6 +138,9 @@ impl App {
             shot: start.shot,
         };
         app.read_scene();
+        if let Some(snapshot) = start.resume {
+            app.source.send(Command::Restore(snapshot));
+        }
         if start.run {
             app.source.send(Command::Run);
         }
@@ -276,6 +281,7 @@ impl App {
                 Key::W => settings.wireframe = !settings.wireframe,
                 Key::G => settings.ghost = !settings.ghost,
                 Key::C => settings.cut = !settings.cut,
+                Key::N => settings.nodes = !settings.nodes,
                 Key::S => settings.supports = !settings.supports,
                 Key::D => settings.dark = !settings.dark,
                 Key::L => {

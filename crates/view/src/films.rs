@@ -85,6 +85,17 @@ impl App {
         });
     }
 
+    /// Writes what is plotted beside where the viewer was started.
+    pub(crate) fn write_table(&mut self) {
+        let probes = self.state.loaded.iter().flat_map(|loaded| &loaded.probes);
+        let table = self.traces.table(probes.map(|(name, numbers)| (name.as_str(), numbers.as_slice())));
+        let path = free_name(Path::new(""), &self.file_stem(), "csv");
+        self.news = Some(match std::fs::write(&path, table) {
+            Ok(()) => (format!("wrote {}", path.display()), false),
+            Err(error) => (format!("{}: {error}", path.display()), true),
+        });
+    }
+
     /// The device of the picture, and its size (pixels).
     fn screen(&self) -> Option<(wgpu::Device, wgpu::Queue, (u32, u32))> {
         let picture = self.picture.as_ref()?;

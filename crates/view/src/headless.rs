@@ -111,8 +111,11 @@ fn of_scene(
     let scene = scene(start)?;
     let mut session = Session::new(start.options.clone());
     session.command(Command::Load(Box::new(scene)));
+    if let Some(snapshot) = &start.resume {
+        session.command(Command::Restore(snapshot.clone()));
+    }
     session.command(Command::Field(start.settings.field));
-    let mut due = 0.0;
+    let mut due = session.state().time;
     loop {
         let state = session.state();
         if let Some(refusal) = &state.refusal {

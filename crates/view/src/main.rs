@@ -5,7 +5,7 @@ use eframe::egui;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use sinew::components::Precision;
 use sinew::scene::schema::OutputField;
-use sinew::{BackendChoice, Host, Options};
+use sinew::{BackendChoice, Host, Options, Snapshot};
 use sinew_view::{App, FIELDS, Settings, Shot, Start, headless, measure};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -21,6 +21,9 @@ struct Arguments {
     /// Put a value into the scene: --set bodies.cube.mesh.cells=(4, 4, 4)
     #[arg(long = "set", value_name = "PATH=VALUE")]
     sets: Vec<String>,
+    /// Begin with a state of the scene: a snapshot of sinew run, or one that a program has written
+    #[arg(long, value_name = "FILE", conflicts_with = "frame_times")]
+    resume: Option<PathBuf>,
     /// Where to run.
     #[arg(long, value_enum, default_value = "auto")]
     backend: Backend,
@@ -98,7 +101,15 @@ fn main() -> ExitCode {
         eprintln!("sinew-view: --speed {}: it must be above 0", arguments.speed);
         return ExitCode::from(2);
     }
+    let resume = match arguments.resume.as_deref().map(Snapshot::read).transpose() {
+        Ok(snapshot) => snapshot.map(Box::new),
+        Err(error) => {
+            eprintln!("sinew-view: {error}");
+            return ExitCode::from(2);
+        }
+    };
     let mut start = Start {
+        resume,
         options: Options { backend, precision, threads: arguments.threads, ..Options::default() },
         scene: arguments.scene,
         sets: arguments.sets,

@@ -13,7 +13,7 @@ use sinew_pictures::render::{Camera, Scale};
 const HAND: Color32 = Color32::from_rgb(255, 176, 32);
 const PICKED: Color32 = Color32::from_rgb(40, 190, 255);
 const SUPPORT: Color32 = Color32::from_rgb(36, 120, 210);
-/// So many supports are marked; more would hide what they hold.
+/// So many nodes of a body are marked; more would hide what they are of.
 const MOST: usize = 4000;
 
 const SET: Color32 = Color32::from_rgb(150, 70, 200);
@@ -43,6 +43,9 @@ pub struct Marks<'a> {
 impl Marks<'_> {
     /// All of a state.
     pub fn draw(&self, state: &State, settings: &Settings, drawn: &Drawn<'_>) {
+        if settings.nodes {
+            self.nodes(state, settings);
+        }
         if settings.supports {
             self.supports(state, settings);
         }
@@ -69,6 +72,19 @@ impl Marks<'_> {
     fn at(&self, point: Vec3) -> Option<Pos2> {
         let seen = self.camera.project(point);
         (seen.is_finite() && seen.z > 0.0).then(|| self.frame.on_screen(seen.truncate()))
+    }
+
+    /// Of a body with more nodes than are marked every second one, or third, and so on.
+    fn nodes(&self, state: &State, settings: &Settings) {
+        let Some(loaded) = &state.loaded else { return };
+        for (body, now) in loaded.bodies.iter().zip(&state.bodies) {
+            let every = body.rest.len().div_ceil(MOST).max(1);
+            for (rest, place) in body.rest.iter().zip(&now.positions).step_by(every) {
+                if let Some(at) = self.at(seen(*rest, *place, settings)) {
+                    self.painter.circle_filled(at, 1.5, self.colour);
+                }
+            }
+        }
     }
 
     fn supports(&self, state: &State, settings: &Settings) {

@@ -25,12 +25,13 @@ pub fn number(number: f64) -> String {
 }
 
 /// Keys and what they do.
-pub const KEYS: [(Key, &str, &str); 13] = [
+pub const KEYS: [(Key, &str, &str); 14] = [
     (Key::Space, "space", "run, pause"),
     (Key::ArrowRight, "arrow right", "one step (with shift: 100)"),
     (Key::R, "R", "back to the start"),
     (Key::F, "F", "see all"),
     (Key::W, "W", "edges of elements"),
+    (Key::N, "N", "nodes"),
     (Key::G, "G", "shape at rest"),
     (Key::C, "C", "cut open"),
     (Key::S, "S", "what is held"),

@@ -17,6 +17,8 @@ pub struct Settings {
     pub deformation: f32,
     /// Edges of elements.
     pub wireframe: bool,
+    /// Nodes as points.
+    pub nodes: bool,
     /// The shape at rest.
     pub ghost: bool,
     /// The field whose vectors are drawn as arrows.
@@ -57,6 +59,7 @@ impl Default for Settings {
             range: None,
             deformation: 1.0,
             wireframe: false,
+            nodes: false,
             ghost: false,
             arrows: None,
             supports: false,

@@ -6,12 +6,17 @@ use crate::scene3d::{Surface, Tissue};
 use crate::settings::{Settings, about};
 use body::{BodyMesh, Part};
 use glam::{DVec3, Vec3};
+use sinew::SceneFile;
 use sinew::driver::{Loaded, State};
 use sinew::scene::schema::Cut;
-use sinew_pictures::render::{Camera, Extent, Finish, Layer, Lines, Placed, Plane, Scale, SeenValues, Tools};
+use sinew_pictures::render::{Camera, Extent, Finish, Image, Layer, Lines, Placed, Plane, Scale, SeenValues, Tools};
 use std::hash::{Hash, Hasher};
 use std::path::PathBuf;
 use std::sync::Arc;
+
+/// Pictures on skins have so many bytes and pixels at most: what is larger is no picture of a skin.
+const MOST_BYTES: u64 = 64 << 20;
+const MOST_PIXELS: usize = 1 << 26;
 
 /// What is kept from frame to frame of a scene.
 #[derive(Default)]
@@ -25,7 +30,7 @@ pub struct Scenery {
     tools: Tools,
     /// How bodies look.
     pub tissues: Vec<Tissue>,
-    /// Tools that cannot be drawn, and why.
+    /// Tools, and pictures on skins, that cannot be drawn, and why.
     pub missing: Vec<String>,
 }
 
@@ -68,6 +73,14 @@ impl Scenery {
             Some(folder) => Tools::of_scene(&loaded.scene, folder),
             None => Tools::live(&loaded.scene),
         };
+        for (mesh, body) in self.bodies.iter_mut().zip(&loaded.bodies) {
+            match picture_of(&loaded.scene, &body.name) {
+                Ok(picture) => mesh.picture = picture.map(Arc::new),
+                Err(why) => {
+                    self.missing.push(format!("the picture on the skin of `{}` is not drawn: {why}", body.name))
+                }
+            }
+        }
         let tissue = |name: &String| {
             let of = loaded.scene.scene.bodies.get(name).map(|body| format!("{name} {:?}", body.material));
             Tissue::of_name(of.as_deref().unwrap_or(name))
@@ -117,6 +130,15 @@ impl Scenery {
     }
 }
 
+/// The picture on the skin of a body, if it has one.
+fn picture_of(scene: &SceneFile, body: &str) -> Result<Option<Image>, String> {
+    let skin = scene.scene.bodies.get(body).and_then(|body| body.skin.as_ref());
+    let Some(name) = skin.and_then(|skin| skin.image.as_ref()) else { return Ok(None) };
+    let bytes = scene.bytes(name, MOST_BYTES).map_err(|error| format!("{name}: {error}"))?;
+    let image = Image::from_png(&bytes, MOST_PIXELS).map_err(|error| format!("{name}: {error}"))?;
+    Ok(Some(image))
+}
+
 /// The plane that cuts, between where it takes all of an extent away and nothing.
 fn plane(settings: &Settings, extent: &Extent) -> Plane {
     let normal = settings.cut_normal.normalize_or(Vec3::NEG_Y);
@@ -137,7 +159,7 @@ impl Drawn<'_> {
         let depth = |normal: Vec3| vertices().map(|point| -normal.dot(*point)).fold(f32::MIN, f32::max);
         for placed in &self.tools {
             let layer = placed.layer(camera, &self.bodies, depth);
-            surfaces.push(Surface { layer, rest: &[], normals: &[], tissue: None, lent: None });
+            surfaces.push(Surface { layer, rest: &[], normals: &[], tissue: None, picture: None, lent: None });
         }
         surfaces
     }

@@ -44,6 +44,30 @@ impl Traces {
         }
     }
 
+    /// All of it as CSV: a row for each time (s), a column for each energy (J) and each number of a probe, which are
+    /// given by names and numbers with units; what is no number is empty.
+    pub fn table<'a>(&self, probes: impl Iterator<Item = (&'a str, &'a [String])>) -> String {
+        let energies = ENERGIES.iter().map(|name| format!("{name} (J)"));
+        let of_probes =
+            probes.flat_map(|(probe, numbers)| numbers.iter().map(move |number| format!("{probe} {number}")));
+        let heads = std::iter::once("t (s)".to_string()).chain(energies).chain(of_probes);
+        let quoted = |head: String| match head.contains([',', '"', '\n']) {
+            true => format!("\"{}\"", head.replace('"', "\"\"")),
+            false => head,
+        };
+        let mut text = heads.map(quoted).collect::<Vec<_>>().join(",") + "\n";
+        for (row, time) in self.times.iter().enumerate() {
+            text += &time.to_string();
+            for column in &self.columns {
+                text.push(',');
+                let number = column.get(row).filter(|number| number.is_finite());
+                text += &number.map(f64::to_string).unwrap_or_default();
+            }
+            text.push('\n');
+        }
+        text
+    }
+
     /// The points of a column that are numbers.
     pub fn points(&self, column: usize) -> Vec<[f64; 2]> {
         let numbers = self.columns.get(column).map(Vec::as_slice).unwrap_or_default();
@@ -73,6 +97,14 @@ mod tests {
         // three of energies, then the probe of the ground and that of the top, three each
         let top = traces.points(8);
         assert!(top[4][1] < top[0][1] && top[4][1] < 0.0, "{top:?}");
+        let state = session.state();
+        let probes = &state.loaded.as_ref().unwrap().probes;
+        let table = traces.table(probes.iter().map(|(name, numbers)| (name.as_str(), numbers.as_slice())));
+        let lines: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+        assert_eq!((lines.len(), lines[0][0], lines[0][9]), (6, "t (s)", "top uz (m)"));
+        for (line, [time, number]) in lines[1..].iter().zip(&top) {
+            assert_eq!((line.len(), line[0], line[9]), (10, &*time.to_string(), &*number.to_string()));
+        }
         session.command(Command::Reset);
         session.command(Command::Step(3));
         traces.note(&session.state());

@@ -52,8 +52,12 @@ impl Place {
     }
 
     fn open_path(&self, path: PathBuf) -> Harness<'static, Option<App>> {
+        self.open_with(Start { scene: Some(path), ..Start::default() })
+    }
+
+    fn open_with(&self, start: Start) -> Harness<'static, Option<App>> {
         let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
-        let start = Start { scene: Some(path), options, ..Start::default() };
+        let start = Start { options, ..start };
         let app = move |ui: &mut egui::Ui, app: &mut Option<App>| {
             app.get_or_insert_with(|| App::new(ui.ctx(), start.clone(), None)).show(ui);
         };
@@ -104,6 +108,21 @@ fn it_runs_pauses_steps_and_goes_back_by_its_buttons() {
 }
 
 #[test]
+fn it_begins_with_a_state_that_was_kept() {
+    let place = Place::new();
+    let options = Options { backend: BackendChoice::Cpu, threads: 1, grabs: true, ..Options::default() };
+    let mut simulation = Simulation::new(&SceneFile::load(&place.scene, &[]).unwrap(), &options).unwrap();
+    simulation.advance(60).unwrap();
+    let resume = Some(Box::new(simulation.snapshot().unwrap()));
+    let mut harness = place.open_with(Start { scene: Some(place.scene.clone()), resume, ..Start::default() });
+    wait(&mut harness, "the state", |state| state.step == 60);
+    let places = simulation.positions("cube").unwrap();
+    assert_eq!(state(&harness).bodies[0].positions, places.iter().map(|p| p.as_vec3().to_array()).collect::<Vec<_>>());
+    press(&mut harness, "Reset");
+    wait(&mut harness, "the start of the scene", |state| state.step == 0);
+}
+
+#[test]
 fn keys_and_boxes_change_what_is_seen() {
     let place = Place::new();
     let mut harness = place.open();
@@ -113,6 +132,11 @@ fn keys_and_boxes_change_what_is_seen() {
     harness.key_press(Key::W);
     harness.step();
     assert!(!settings(&harness).wireframe);
+    press(&mut harness, "Nodes");
+    assert!(settings(&harness).nodes);
+    harness.key_press(Key::N);
+    harness.step();
+    assert!(!settings(&harness).nodes);
     press(&mut harness, "Cut open");
     assert!(settings(&harness).cut);
     press(&mut harness, "Dark");
@@ -148,6 +172,9 @@ fn the_mouse_picks_and_with_ctrl_it_pulls() {
     harness.step();
     let picked = state(&harness).picked.clone().unwrap();
     harness.get_by_label(&format!("cube, node {}", picked.node_number));
+    assert!(picked.step.is_some_and(|step| step > 0.0));
+    assert!(harness.query_all_by_label_contains("the element's stable step: ").next().is_some());
+    assert!(harness.query_all_by_label_contains("in the sets ").next().is_some(), "what is seen is on a side");
     pointer(&mut harness, middle, Some(true), Modifiers::CTRL);
     pointer(&mut harness, middle + egui::vec2(12.0, 0.0), None, Modifiers::CTRL);
     wait(&mut harness, "a hold", |state| !state.held.is_empty());

@@ -31,7 +31,10 @@ fn root() -> PathBuf {
 
 fn state(scene: &str, sets: &[&str], commands: Vec<Command>) -> State {
     let sets: Vec<String> = sets.iter().map(|set| set.to_string()).collect();
-    let scene = SceneFile::load(root().join("scenes").join(scene), &sets).unwrap();
+    state_of(SceneFile::load(root().join("scenes").join(scene), &sets).unwrap(), commands)
+}
+
+fn state_of(scene: SceneFile, commands: Vec<Command>) -> State {
     let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
     let mut session = Session::new(options);
     session.command(Command::Load(Box::new(scene)));
@@ -143,6 +146,47 @@ fn edges_ghosts_shadows_and_wetness_are_seen() {
 }
 
 /// A picture of a state as tissue, by a device that the simulation may have bodies on.
+/// A square on top of a cube, with a picture whose left half is green and whose right half is blue.
+#[test]
+fn a_picture_is_seen_on_a_skin_at_its_texture_coordinates() {
+    let Some((device, queue)) = device() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let square = "v 0 0 0.1\nv 0.1 0 0.1\nv 0.1 0.1 0.1\nv 0 0.1 0.1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
+                  f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
+    std::fs::write(folder.path().join("top.obj"), square).unwrap();
+    let mut halves = Image::new(8, 4, [20, 200, 20]);
+    (0..4).for_each(|row| halves.pixels[8 * row + 4..8 * row + 8].fill([20, 20, 200]));
+    write_png(&folder.path().join("top.png"), &halves).unwrap();
+    let skin = "material: \"tissue\", skin: (file: \"top.obj\", image: \"top.png\")";
+    let cube = include_str!("../../../scenes/cube_under_gravity.ron").replace("material: \"tissue\"", skin);
+    let state = state_of(SceneFile::from_text("cube.ron", &cube, folder.path(), &[]).unwrap(), Vec::new());
+    let mut scene3d = Scene3d::new(device, queue, SIZE);
+    let above = camera(&state, Vec3::Z);
+    // where pixels of a colour are, on the average, and how many there are
+    let colour = |image: &Image, part: usize| {
+        let is = |pixel: &[u8; 3]| (0..3).all(|other| other == part || pixel[part] > pixel[other].saturating_add(30));
+        let found = image.pixels.iter().enumerate().filter(|(_, pixel)| is(pixel));
+        let (sum, count) = found.fold((0, 0u32), |(sum, count), (place, _)| (sum + place % image.width, count + 1));
+        (sum as f64 / f64::from(count.max(1)), count)
+    };
+    let [seen, _] = both(&mut scene3d, &state, &Settings::default(), &above);
+    let ((green, some), (blue, others)) = (colour(&seen, 1), colour(&seen, 2));
+    // x goes to the right, seen from above, and the square's halves are alike
+    assert!(green < blue && some > 5000 && some.abs_diff(others) < some / 5, "{green} {some} {blue} {others}");
+    let [bare, _] = both(&mut scene3d, &state, &Settings { skins: false, ..Settings::default() }, &above);
+    assert_eq!((colour(&bare, 1).1, colour(&bare, 2).1), (0, 0));
+    // a picture that is not there is told, and the skin is drawn without
+    std::fs::write(folder.path().join("top.png"), "no picture").unwrap();
+    let state = state_of(SceneFile::from_text("cube.ron", &cube, folder.path(), &[]).unwrap(), Vec::new());
+    let mut scenery = Scenery::default();
+    scenery.follow(&state);
+    assert!(
+        scenery.missing[0].contains("the picture on the skin of `cube` is not drawn: top.png"),
+        "{:?}",
+        scenery.missing
+    );
+}
+
 fn tissue(scene3d: &mut Scene3d, state: &State, lends: bool) -> Image {
     let mut scenery = Scenery::new(lends, None);
     scenery.follow(state);

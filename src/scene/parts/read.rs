@@ -285,10 +285,11 @@ fn overrides(source: &Source, set: &Node) -> Vec<Override> {
 }
 
 /// Fields that name files; a star stands for any name.
-const PATHS: [&[&str]; 5] = [
+const PATHS: [&[&str]; 6] = [
     &["bodies", "*", "mesh", "path"],
     &["bodies", "*", "rest_shape"],
     &["bodies", "*", "skin", "file"],
+    &["bodies", "*", "skin", "image"],
     &["materials", "*", "law", "file"],
     &["tools", "*", "mesh", "path"],
 ];

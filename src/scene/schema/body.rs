@@ -78,6 +78,9 @@ pub struct SkinFile {
     /// What its coordinates are multiplied with to be those of the mesh.
     #[serde(default = "one")]
     pub scale: f64,
+    /// A picture (PNG) that the viewer puts on it, at its texture coordinates; its path relative to the scene file.
+    #[serde(default)]
+    pub image: Option<String>,
     /// A further format for the skin's series, for programs that read no VTU files.
     #[serde(default)]
     pub also: Option<SkinFormat>,

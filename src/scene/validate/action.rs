@@ -12,8 +12,9 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
         let (Constraint::Fixed { on, axes, .. } | Constraint::Prescribed { on, axes, .. }) = constraint;
         select::validate(validator, &path.name("on"), on);
         validate_axes(validator, &path.name("axes"), axes);
-        if let Constraint::Prescribed { body, rotation, per_copy: Some(values), .. } = constraint {
+        if let Constraint::Prescribed { body, displacement, rotation, per_copy: Some(values), .. } = constraint {
             per_copy::of_body(scene_, validator, &path, body.as_ref(), Some(&**values));
+            per_copy::of_directions(validator, &path, *displacement, values);
             if *rotation != DVec3::ZERO {
                 validator
                     .out

@@ -31,6 +31,9 @@ pub(super) const TOOLS: KindOfFile = KindOfFile {
     formats: "STL (.stl), OBJ (.obj), PLY (.ply), glTF (.gltf, .glb)",
 };
 
+/// Pictures that skins have on them.
+const IMAGES: KindOfFile = KindOfFile { what: "picture", endings: &["png"], formats: "PNG (.png)" };
+
 pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
     for (name, body) in &file.scene.bodies {
         let path = scene("bodies").name(name);
@@ -54,6 +57,9 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
         if let Some(skin) = &body.skin {
             named_file(file, validator, &path.name("skin").name("file"), &skin.file, &TOOLS);
             validator.above_zero(&path.name("skin").name("scale"), skin.scale, "");
+            if let Some(image) = &skin.image {
+                named_file(file, validator, &path.name("skin").name("image"), image, &IMAGES);
+            }
             if body.copies > 1 {
                 validator
                     .out

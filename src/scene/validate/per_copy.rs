@@ -6,6 +6,7 @@ use crate::scene::load::SceneFile;
 use crate::scene::schema::{Body, Load, LoadParts, Material, PerCopy, Scene};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
+use glam::DVec3;
 use std::collections::BTreeSet;
 
 pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
@@ -69,6 +70,23 @@ pub(super) fn of_load(scene_: &Scene, validator: &mut Validator, path: &Path, lo
         return;
     }
     of_body(scene_, validator, path, body, Some(values));
+    if load.is_vector() {
+        of_directions(validator, path, load.amplitude(), values);
+    }
+}
+
+/// Warns where random directions multiply a vector whose components differ: each component has a factor of its own, so
+/// that what comes out is neither as large in all copies nor each way alike.
+pub(super) fn of_directions(validator: &mut Validator, path: &Path, vector: DVec3, values: &PerCopy) {
+    let is_even = vector.x == vector.y && vector.y == vector.z;
+    if !matches!(values, PerCopy::Directions { .. }) || is_even || !vector.is_finite() {
+        return;
+    }
+    let [x, y, z] = vector.to_array().map(show);
+    let size = show(vector.length());
+    let message = format!("`Directions` multiplies ({x}, {y}, {z}) component by component: that does not turn it");
+    let note = format!("({size}, {size}, {size}) is of that size some way of its own in each copy");
+    validator.out.warn_at(path.name("per_copy"), message).note(note);
 }
 
 /// Whether a body has copies that may differ.

@@ -25,6 +25,16 @@ fn a_body_is_a_mesh_that_moves_and_has_normals() {
 }
 
 #[test]
+fn the_cube_of_the_example_sags() {
+    let (mut app, scene) = cube::app();
+    update(&mut app, 2);
+    let top = |app: &App| places(app, body(app, scene, "cube")).iter().map(|place| place[2]).fold(f32::MIN, f32::max);
+    let before = top(&app);
+    update(&mut app, 8);
+    assert!(top(&app) < before - 1e-3, "{} m high, then {} m", before, top(&app));
+}
+
+#[test]
 fn normals_point_out_of_the_body() {
     let mut app = app();
     let scene = spawn(&mut app, BAR);

@@ -4,8 +4,12 @@
 
 mod assets;
 mod bodies;
+#[allow(dead_code)]
+#[path = "../../examples/cube.rs"]
+mod cube;
 mod gizmos;
 mod hands;
+mod page;
 mod time;
 
 use bevy_app::{App, TaskPoolPlugin};

@@ -5,6 +5,7 @@ mod sinew;
 
 mod advises;
 mod benches;
+mod documented;
 mod ends;
 mod explains;
 mod interrupted;

@@ -7,7 +7,7 @@
 >>> places = simulation.body("cube").positions()  # (n, 3), in m
 
 A scene is a text file (`docs/scene.md` describes every word); all units are SI. `docs/python.md` tells of the rest:
-inputs, grabbing, snapshots, errors, pictures, sweeps (:func:`sinew.sweep`), reinforcement learning (:mod:`sinew.gym`),
+inputs, grabbing, snapshots, errors, pictures, the viewer (:func:`sinew.view`), sweeps (:func:`sinew.sweep`), reinforcement learning (:mod:`sinew.gym`),
 :mod:`sinew.usd` and :mod:`sinew.rerun`.
 """
 
@@ -17,6 +17,7 @@ from ._copies import per_copy
 from ._errors import Bug, Error, GpuError, NotConverged, SceneError, SnapshotError, Unstable
 from ._sinew import Body, Grab, Inputs, Pick, Picture, Scene, Simulation, Snapshot, __version__
 from ._sweep import Row, grid, latin_hypercube, read_sweep, sweep
+from ._view import view
 
 Mapping.register(Inputs)
 
@@ -43,4 +44,5 @@ __all__ = [
     "per_copy",
     "read_sweep",
     "sweep",
+    "view",
 ]

@@ -14,6 +14,11 @@ impl App {
         self.news = Some(("a page writes no pictures: the browser or the system takes one of the screen".into(), true));
     }
 
+    /// Says that there are no files.
+    pub(crate) fn write_table(&mut self) {
+        self.news = Some(("a page writes no files".into(), true));
+    }
+
     /// No film is being taken.
     pub(crate) fn pictures_taken(&self) -> Option<usize> {
         self.films.taken

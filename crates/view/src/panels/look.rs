@@ -43,6 +43,7 @@ impl App {
         let settings = &mut self.settings;
         ui.horizontal_wrapped(|ui| {
             ui.checkbox(&mut settings.wireframe, "Elements").on_hover_text("edges of elements");
+            ui.checkbox(&mut settings.nodes, "Nodes").on_hover_text("nodes as points, those inside too");
             ui.checkbox(&mut settings.ghost, "Rest shape");
             ui.checkbox(&mut settings.supports, "Supports").on_hover_text("nodes that are fixed or moved as told");
             ui.checkbox(&mut settings.removed, "Removed").on_hover_text("elements that are gone");

@@ -78,6 +78,14 @@ impl App {
         if body.constrained.get(node).is_some_and(|axes| *axes != 0) {
             lines.push("held".into());
         }
+        let within = body.sets.iter().filter(|(_, nodes)| nodes.contains(&picked.node));
+        let sets: Vec<&str> = within.map(|(name, _)| name.as_str()).collect();
+        if !sets.is_empty() {
+            lines.push(format!("in the sets {}", sets.join(", ")));
+        }
+        if let Some(step) = picked.step {
+            lines.push(format!("the element's stable step: {} s", number(step)));
+        }
         lines.push(format!("in the scene: bodies.{}, materials.{}", body.name, picked.material));
         lines
     }
@@ -87,6 +95,11 @@ impl App {
         let mut plots: Vec<(String, Vec<String>)> = vec![("energies (J)".into(), ENERGIES.map(String::from).to_vec())];
         plots.extend(probes.cloned());
         let mut column = 0;
+        // those of a finished run are files already
+        if self.source.finished().is_none() && ui.button("Write CSV").on_hover_text("all curves in one table").clicked()
+        {
+            self.write_table();
+        }
         ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {
             for (title, numbers) in plots {
                 ui.label(&title);

@@ -39,8 +39,8 @@ pub fn pick(bodies: &[Body], states: &[BodyState], origin: DVec3, direction: DVe
                     distance,
                 };
                 let node_number = body.nodes.of(node as usize);
-                nearest =
-                    Some(Picked { node, node_number, element, material: material.cloned().unwrap_or_default(), pick });
+                let material = material.cloned().unwrap_or_default();
+                nearest = Some(Picked { node, node_number, element, material, step: None, pick });
             }
         }
     }

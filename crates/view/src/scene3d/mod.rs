@@ -5,6 +5,7 @@
 //! picture of the viewer and one of `sinew render` are of the same scene.
 
 mod lent;
+mod painted;
 mod pipelines;
 // what waits for the device, as nothing may in a page
 #[cfg(not(target_arch = "wasm32"))]
@@ -18,6 +19,7 @@ pub use triangles::Surface;
 pub use uniform::{Look, Tissue};
 
 use lent::{Deform, Kept, KeptBody};
+use painted::Painted;
 use pipelines::Pipelines;
 use sinew_pictures::render::{Camera, Extent, Plane, Scale};
 use target::{Maps, Target, depth};
@@ -51,6 +53,7 @@ pub struct Scene3d {
     deform: Option<Deform>,
     kept: Option<Kept>,
     maps: Maps,
+    painted: Painted,
     target: Target,
 }
 
@@ -60,7 +63,8 @@ impl Scene3d {
         let pipelines = Pipelines::new(&device);
         let maps = Maps::new(&device, &pipelines);
         let target = Target::new(&device, size, pipelines.colour);
-        Self { device, queue, pipelines, deform: None, kept: None, maps, target }
+        let painted = Painted::new(&device, &queue);
+        Self { device, queue, pipelines, deform: None, kept: None, maps, painted, target }
     }
 
     /// Width and height of the picture (pixels).
@@ -87,6 +91,7 @@ impl Scene3d {
         self.keep(scene, camera);
         let kept: &[KeptBody] = self.kept.as_ref().map_or(&[], |kept| &kept.bodies);
         let triangles = triangles::of(scene.surfaces, camera);
+        self.painted.hold(&self.device, &self.queue, &triangles.pictures);
         let group = self.bind(scene, camera);
         let corners = self.device.create_buffer_init(&BufferInitDescriptor {
             label: Some("corners"),
@@ -165,6 +170,7 @@ impl Scene3d {
             ramp.as_flattened(),
         );
         let ramp = ramp.create_view(&TextureViewDescriptor::default());
+        let [pictures, sampler] = self.painted.bound();
         self.device.create_bind_group(&BindGroupDescriptor {
             label: Some("scene"),
             layout: &self.pipelines.scene,
@@ -172,6 +178,8 @@ impl Scene3d {
                 BindGroupEntry { binding: 0, resource: view.as_entire_binding() },
                 BindGroupEntry { binding: 1, resource: BindingResource::TextureView(&ramp) },
                 BindGroupEntry { binding: 2, resource: tissues.as_entire_binding() },
+                BindGroupEntry { binding: 3, resource: pictures },
+                BindGroupEntry { binding: 4, resource: sampler },
             ],
         })
     }

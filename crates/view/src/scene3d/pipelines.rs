@@ -60,6 +60,8 @@ impl Pipelines {
                 entry(0, ShaderStages::VERTEX_FRAGMENT, buffer(BufferBindingType::Uniform)),
                 entry(1, ShaderStages::FRAGMENT, texture(TextureSampleType::Float { filterable: false })),
                 entry(2, ShaderStages::FRAGMENT, buffer(BufferBindingType::Uniform)),
+                entry(3, ShaderStages::FRAGMENT, layers()),
+                entry(4, ShaderStages::FRAGMENT, BindingType::Sampler(SamplerBindingType::Filtering)),
             ],
         });
         let shadows = device.create_bind_group_layout(&BindGroupLayoutDescriptor {
@@ -104,6 +106,12 @@ fn entry(binding: u32, visibility: ShaderStages, ty: BindingType) -> BindGroupLa
 
 fn buffer(ty: BufferBindingType) -> BindingType {
     BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None }
+}
+
+/// Of pictures.
+fn layers() -> BindingType {
+    let sample_type = TextureSampleType::Float { filterable: true };
+    BindingType::Texture { sample_type, view_dimension: TextureViewDimension::D2Array, multisampled: false }
 }
 
 fn texture(sample_type: TextureSampleType) -> BindingType {

@@ -27,6 +27,9 @@ struct View {
 @group(0) @binding(0) var<uniform> view: View;
 @group(0) @binding(1) var ramp: texture_2d<f32>;
 @group(0) @binding(2) var<uniform> tissues: array<vec4f, 512>;
+// pictures on surfaces
+@group(0) @binding(3) var pictures: texture_2d_array<f32>;
+@group(0) @binding(4) var repeated: sampler;
 @group(1) @binding(0) var key_map: texture_depth_2d;
 @group(1) @binding(1) var sky_map: texture_depth_2d;
 @group(1) @binding(2) var nearer: sampler_comparison;
@@ -37,7 +40,7 @@ struct View {
 struct Corner {
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
-    // where noise is taken: it sticks to the tissue
+    // where noise is taken: it sticks to the tissue; of what has a picture on it the place there, and which it is
     @location(2) rest: vec3f,
     @location(3) value: f32,
     @location(4) flags: u32,
@@ -61,6 +64,7 @@ const STEEL = 4u;
 const TABLE = 5u;
 const PANE = 6u;
 const TISSUE = 7u;
+const PICTURED = 8u;
 
 // Some of the bits of flags; `extractBits` is not in all of WebGL.
 fn bits(flags: u32, first: u32, count: u32) -> u32 { return (flags >> first) & ((1u << count) - 1u); }
@@ -208,20 +212,21 @@ fn film(normal: vec3f, light: vec2f, dull: f32) -> f32 {
 }
 
 // Tissue: light goes in, is scattered, and comes out redder beyond the edge of its shadow and where it is thin.
-// `pixel`: how far the shape at rest goes on from a pixel to the next (m).
-fn tissue(normal: vec3f, rest: vec3f, number: u32, light: vec2f, pixel: f32) -> vec3f {
+// `place`: where noise is taken, and `pixel`: how far that goes on from a pixel to the next, both so that 34 is about the
+// size of a body. `painted`: the colour of a picture, with a weight of 1, or 0.
+fn tissue(normal: vec3f, place: vec3f, number: u32, light: vec2f, pixel: f32, painted: vec4f) -> vec3f {
     let colour = tissues[2u * number];
     let scatter = tissues[2u * number + 1u];
-    let place = rest * (34.0 / view.middle.w);
     let mottled = 0.6 * noise(place) + 0.4 * noise(place * 3.1);
     // a film over what is not quite even: long waves, and finer ones as far as a pixel shows them
     let long = place * 1.7;
     let fine = place * 5.0;
-    let dull = smoothstep(0.12, 0.5, 5.0 * pixel * 34.0 / view.middle.w);
+    let dull = smoothstep(0.12, 0.5, 5.0 * pixel);
     let waves = vec3f(noise(long), noise(long + vec3f(31.7)), noise(long + vec3f(77.1))) - 0.5;
     let ripples = vec3f(noise(fine), noise(fine + vec3f(31.7)), noise(fine + vec3f(77.1))) - 0.5;
     let uneven = normalize(normal + scatter.w * (0.09 * waves + 0.05 * (1.0 - dull) * ripples));
-    let albedo = colour.rgb * mix(vec3f(1), 0.72 + 0.5 * vec3f(mottled, mottled * 0.92, mottled * 0.9), colour.w);
+    let own = colour.rgb * mix(vec3f(1), 0.72 + 0.5 * vec3f(mottled, mottled * 0.92, mottled * 0.9), colour.w);
+    let albedo = mix(own, painted.rgb, painted.a);
     let wrap = scatter.rgb;
     let key = clamp((vec3f(dot(normal, KEY)) + wrap) / (1.0 + wrap), vec3f(0), vec3f(1));
     let fill = clamp((vec3f(dot(normal, FILL)) + wrap) / (1.0 + wrap), vec3f(0), vec3f(1));
@@ -258,6 +263,8 @@ fn side_of(it: Seen, front: bool) -> Side {
 @fragment fn solid(it: Seen, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let width = fwidth(it.share);
     let pixel = length(fwidth(it.rest));
+    let across = dpdx(it.rest.xy);
+    let down = dpdy(it.rest.xy);
     if is_cut(it.flags, it.position) { discard; }
     let side = side_of(it, front);
     let light = light_at(it.position, side.world);
@@ -270,7 +277,13 @@ fn side_of(it: Seen, front: bool) -> Side {
         let table = select(vec3f(0.8388, 0.8528, 0.8686), vec3f(0.045, 0.055, 0.07), view.shade.w < 0.5);
         colour = lit(side.eye, table, vec2f(mix(0.55, 1.0, light.x), light.y));
     } else if finish == TISSUE {
-        colour = tissue(side.eye, it.rest, bits(it.flags, 17u, 8u), light, pixel) * (1.0 - ink);
+        let large = 34.0 / view.middle.w;
+        let number = bits(it.flags, 17u, 8u);
+        colour = tissue(side.eye, it.rest * large, number, light, pixel * large, vec4f(0)) * (1.0 - ink);
+    } else if finish == PICTURED {
+        let painted = textureSampleGrad(pictures, repeated, it.rest.xy, i32(it.rest.z + 0.5), across, down);
+        let number = bits(it.flags, 17u, 8u);
+        colour = tissue(side.eye, it.rest * 34.0, number, light, pixel * 34.0, vec4f(painted.rgb, 1)) * (1.0 - ink);
     } else {
         var value = of_value(it.value);
         if finish == BARED { value = mix(value, vec3f(0.7098, 0.3424, 0.2957), 0.72); }

@@ -2,7 +2,8 @@
 
 use super::lent::Lent;
 use glam::Vec3;
-use sinew_pictures::render::{Camera, Colouring, Finish, Layer, Lines, of_corners};
+use sinew_pictures::render::{Camera, Colouring, Finish, Image, Layer, Lines, of_corners};
+use std::sync::Arc;
 
 /// A corner of a triangle, as `scene.wgsl` takes it.
 #[repr(C)]
@@ -26,6 +27,9 @@ pub struct Surface<'a> {
     pub normals: &'a [Vec3],
     /// Which kind of tissue it is made of, where no value colours it.
     pub tissue: Option<u8>,
+    /// A picture on it, in place of the tissue's own colour; `rest` are then its places there: right and down from its
+    /// upper left corner, 1 its whole size, beyond which it is repeated.
+    pub picture: Option<&'a Arc<Image>>,
     /// Where its nodes are on the device, if it is drawn from there.
     pub lent: Option<Lent<'a>>,
 }
@@ -39,14 +43,17 @@ pub struct Triangles {
     pub casting: usize,
     /// How many corners are solid: those that are seen through come after them.
     pub solid: usize,
+    /// Pictures on them, by the numbers that corners have of them.
+    pub pictures: Vec<Arc<Image>>,
 }
 
 /// How dark lines are: between elements, in a section, of the shape at rest.
 const INK: [f32; 3] = [0.62, 0.4, 0.75];
 
 /// The number of a finish in `scene.wgsl`.
-fn number(finish: Finish, tissue: bool) -> u32 {
+fn number(finish: Finish, tissue: bool, pictured: bool) -> u32 {
     match finish {
+        Finish::Plain if tissue && pictured => 8,
         Finish::Plain if tissue => 7,
         Finish::Plain => 0,
         Finish::Bared => 1,
@@ -61,10 +68,16 @@ fn number(finish: Finish, tissue: bool) -> u32 {
 /// All surfaces in triangles.
 pub fn of(surfaces: &[Surface<'_>], camera: &Camera) -> Triangles {
     let mut all = Triangles::default();
+    for picture in surfaces.iter().filter_map(|surface| surface.picture) {
+        if !all.pictures.iter().any(|known| Arc::ptr_eq(known, picture)) {
+            all.pictures.push(picture.clone());
+        }
+    }
+    let numbered = |picture: &Arc<Image>| all.pictures.iter().position(|known| Arc::ptr_eq(known, picture));
     let casts = |finish: Finish| matches!(finish, Finish::Plain | Finish::Bared | Finish::Steel);
     let put = |wanted: &dyn Fn(Finish) -> bool, corners: &mut Vec<Corner>| {
         let some = surfaces.iter().filter(|surface| surface.lent.is_none() && wanted(surface.layer.finish));
-        some.for_each(|surface| add(surface, camera, corners));
+        some.for_each(|surface| add(surface, surface.picture.and_then(numbered), camera, corners));
         corners.len()
     };
     all.casting = put(&casts, &mut all.corners);
@@ -82,7 +95,7 @@ pub fn kept(surface: &Surface<'_>, camera: &Camera) -> (Vec<Corner>, Vec<[u32; 2
         return (corners, sources);
     }
     let layer = Layer { vertices: surface.rest, ..surface.layer };
-    add(&Surface { layer, lent: None, ..*surface }, camera, &mut corners);
+    add(&Surface { layer, lent: None, ..*surface }, None, camera, &mut corners);
     for (number, face) in (0..).zip(surface.layer.faces) {
         match face[2] == face[3] {
             true => sources.extend([0, 1, 2].map(|point| [number, point])),
@@ -92,8 +105,9 @@ pub fn kept(surface: &Surface<'_>, camera: &Camera) -> (Vec<Corner>, Vec<[u32; 2
     (corners, sources)
 }
 
-/// A quadrilateral is four triangles about its middle, so that none of its diagonals is favoured.
-fn add(surface: &Surface<'_>, camera: &Camera, corners: &mut Vec<Corner>) {
+/// A quadrilateral is four triangles about its middle, so that none of its diagonals is favoured. `picture`: the number
+/// of that which is on it.
+fn add(surface: &Surface<'_>, picture: Option<usize>, camera: &Camera, corners: &mut Vec<Corner>) {
     let layer = &surface.layer;
     let normals = match layer.flat {
         None if surface.normals.len() == layer.vertices.len() => {
@@ -102,7 +116,7 @@ fn add(surface: &Surface<'_>, camera: &Camera, corners: &mut Vec<Corner>) {
         None => of_corners(layer.vertices, layer.faces),
         Some(normal) => vec![[normal; 4]; layer.faces.len()],
     };
-    let common = number(layer.finish, surface.tissue.is_some()) << 13
+    let common = number(layer.finish, surface.tissue.is_some(), picture.is_some()) << 13
         | u32::from(surface.tissue.unwrap_or(0)) << 17
         | u32::from(layer.cut) << 25;
     for (row, face) in layer.faces.iter().enumerate() {
@@ -110,7 +124,10 @@ fn add(surface: &Surface<'_>, camera: &Camera, corners: &mut Vec<Corner>) {
         if !places.iter().all(|place| place.is_finite()) {
             continue;
         }
-        let rest = face.map(|point| surface.rest.get(point as usize).copied().unwrap_or_default());
+        let rest = face.map(|point| {
+            let rest = surface.rest.get(point as usize).copied().unwrap_or_default();
+            picture.map_or(rest, |number| rest.with_z(number as f32))
+        });
         let values = match layer.values {
             Colouring::Vertices(values) => face.map(|point| values[point as usize]),
             Colouring::Faces(values) => [values[row]; 4],

@@ -8,8 +8,11 @@ use sinew::driver::{Body, BodyState, Loaded};
 use sinew::mesh::Cells;
 use sinew::mesh::topology::MOST_NODES;
 use sinew::scene::schema::OutputField;
-use sinew_pictures::render::{Averages, Colouring, Faces, Finish, Layer, Lines, Outer, Plane, Section, Skin, creases};
+use sinew_pictures::render::{
+    Averages, Colouring, Faces, Finish, Image, Layer, Lines, Outer, Plane, Section, Skin, creases,
+};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// What is known of a body's mesh, and where it is drawn.
 pub struct BodyMesh {
@@ -28,6 +31,8 @@ pub struct BodyMesh {
     pub vertices: Vec<Vec3>,
     /// Whether it may be drawn from where its nodes are on the device.
     pub lends: bool,
+    /// A picture on its skin.
+    pub picture: Option<Arc<Image>>,
 }
 
 /// Faces of one finish.
@@ -48,6 +53,8 @@ pub struct Part {
     cut: bool,
     /// Where it is drawn from where its nodes are on the device: of which body, and how many times as far moved.
     pub lent: Option<(usize, f32)>,
+    /// What is on it; `rest` are then places in that.
+    picture: Option<Arc<Image>>,
 }
 
 /// What the faces of a body's own surface share.
@@ -74,6 +81,7 @@ impl BodyMesh {
             ghost,
             places,
             lends: false,
+            picture: None,
         }
     }
 
@@ -134,6 +142,7 @@ impl BodyMesh {
                 flat: None,
                 cut: true,
                 lent: None,
+                picture: None,
             });
         }
     }
@@ -155,6 +164,7 @@ impl BodyMesh {
             flat: None,
             cut: true,
             lent: None,
+            picture: None,
         }
     }
 
@@ -172,6 +182,7 @@ impl BodyMesh {
             flat: None,
             cut: true,
             lent: common.lent,
+            picture: None,
         }
     }
 
@@ -211,10 +222,16 @@ impl BodyMesh {
         } else {
             skin.elements.iter().zip(&skin.weights).map(value).collect()
         };
+        let vertices = moved.collect();
+        // where each point is in the picture, from its upper left corner on
+        let is_painted = values.is_empty() && skin.texture.len() == skin.points.len();
+        let picture = self.picture.clone().filter(|_| is_painted);
+        let in_picture = || skin.texture.iter().map(|[u, v]| Vec3::new(*u, 1.0 - *v, 0.0)).collect();
         Part {
-            vertices: moved.collect(),
+            vertices,
             faces: skin.triangles.iter().map(|[a, b, c]| [*a, *b, *c, *c]).collect(),
-            rest,
+            rest: if picture.is_some() { in_picture() } else { rest },
+            picture,
             normals: skin.normals.iter().map(|normal| normal.as_vec3()).collect(),
             values,
             finish: Finish::Plain,
@@ -251,6 +268,7 @@ impl BodyMesh {
             flat: Some(plane.normal),
             cut: false,
             lent: None,
+            picture: None,
         }
     }
 }
@@ -271,6 +289,7 @@ impl Part {
             flat: self.flat,
             cut: self.cut,
         };
-        Surface { layer, rest: &self.rest, normals: &self.normals, tissue: self.tissue, lent }
+        let picture = self.picture.as_ref();
+        Surface { layer, rest: &self.rest, normals: &self.normals, tissue: self.tissue, picture, lent }
     }
 }
