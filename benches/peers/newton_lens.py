@@ -45,4 +45,4 @@ class Body:
 if __name__ == "__main__":
     wp.config.quiet = True
     wp.config.enable_backward = False
-    measure("Newton VBD", f"{newton.__version__} (Warp {wp.__version__})", Body, ["10", "20", "50", "100"])
+    measure("Newton VBD", f"{newton.__version__} (Warp {wp.__version__})", Body, ["20", "100", "500"])
