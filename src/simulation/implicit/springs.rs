@@ -5,7 +5,7 @@ use super::axes::Axes;
 use super::preconditioner::SpringSlope;
 use crate::components::{Clock, SpringForces, TouchingSpring};
 use crate::error::Error;
-use crate::systems::{find_surface_springs, find_ties, find_thread_springs, find_tool_springs, seek_surfaces};
+use crate::systems::{find_surface_springs, find_thread_springs, find_ties, find_tool_springs, seek_surfaces};
 use bevy_ecs::prelude::*;
 
 /// What springs resist of a motion at least, as a share of what they would across its way, beyond rounding.

@@ -17,8 +17,8 @@ mod step;
 mod viscosity;
 
 use super::implicit::{
-    FINE, FRAMES, IMPACT, KEEPING, KINEMATIC, LOOSE, MEETING, NEWTON, ON_HOST, PRESSED, SHORT, SLIDING,
-    STABLE_STEP, STIFFEST, SUCTION, TOO_FAST, TOUCHING, TURNING,
+    FINE, FRAMES, IMPACT, KEEPING, KINEMATIC, LOOSE, MEETING, NEWTON, ON_HOST, PRESSED, SHORT, SLIDING, STABLE_STEP,
+    STIFFEST, SUCTION, TOO_FAST, TOUCHING, TURNING,
 };
 use super::{Case, CaseConfiguration};
 use contact::{free, friction, holding, indentation, patch, rest, shapes, springs, start, taking, waves};

@@ -31,7 +31,8 @@ fn solution_solves_the_system_also_where_an_unknown_depends_on_others() {
         factor.solve(&cpu(1), &mut found);
         for (unknown, x) in found.iter().enumerate() {
             let column = factor.column(unknown);
-            let (by_inverse, scale) = (dot(&column, &b), column.iter().zip(&b).map(|(a, b)| (a * b).abs()).sum::<f64>());
+            let (by_inverse, scale) =
+                (dot(&column, &b), column.iter().zip(&b).map(|(a, b)| (a * b).abs()).sum::<f64>());
             assert!((by_inverse - x).abs() <= 1e-9 * (scale + x.abs()), "{lacking}: {by_inverse}, not {x}");
         }
         assert!(!lacking || found[20] == 0.0);
