@@ -117,6 +117,12 @@ impl Cpu {
         Self { pool, alone: OnceLock::new(), threads, arch, arenas: Arenas::default() }
     }
 
+    /// The same threads and instructions, for what has no hold on the world while it works.
+    pub(crate) fn twin(&self) -> Self {
+        let Self { pool, threads, arch, .. } = self;
+        Self { pool: pool.clone(), alone: OnceLock::new(), threads: *threads, arch: *arch, arenas: Arenas::default() }
+    }
+
     /// How many threads work.
     pub fn threads(&self) -> usize {
         self.threads
