@@ -34,13 +34,16 @@ pub(super) struct WantedShare {
     rows: Option<Vec<u32>>,
 }
 
-/// What calls for a system wants of its body; a row of a [list](Rows::List) that the body does not have, and how many
-/// rows it has.
+/// What calls for a system wants of its body; else a row of a [list](Rows::List) that the body does not have, and how
+/// many rows it has.
+pub(super) type WantedShares = Result<Vec<WantedShare>, [usize; 2]>;
+
+/// What calls for a system wants of its body.
 pub(super) fn wanted_shares<S: NodeSystem>(
     of_system: Option<OfSystem>,
     duration: f64,
     world: &mut World,
-) -> Result<Vec<WantedShare>, [usize; 2]> {
+) -> WantedShares {
     let mut callers = world.query::<(Entity, &S, Option<&OfBody>, Option<&OfSystem>)>();
     let mut wanted = Vec::new();
     for (caller, system, of, _) in callers.iter(world).filter(|caller| caller.3.copied() == of_system) {

@@ -1,7 +1,7 @@
 //! What a node system is: what a system does to nodes, row by row, in passes that it shares with its neighbours in the
 //! step.
 
-use super::node_shares::{ShareOf, WantedShare, share_of, wanted_shares};
+use super::node_shares::{ShareOf, WantedShares, share_of, wanted_shares};
 use super::node_slopes::NodeSlopes;
 use super::node_views::{Before, ForceSlopes, MiddleOfStep, NodesAtRest};
 use super::rows::{RowSet, Rows, row_set};
@@ -181,7 +181,7 @@ pub struct NodeRows {
     touches: fn() -> HostSystem,
     slopes: fn(Option<OfSystem>, f64, &mut World, &mut NodeSlopes) -> ForceSlopes,
     energy: fn(Option<OfSystem>, &mut World) -> Option<f64>,
-    wanted_shares: fn(Option<OfSystem>, f64, &mut World) -> Result<Vec<WantedShare>, [usize; 2]>,
+    wanted_shares: fn(Option<OfSystem>, f64, &mut World) -> WantedShares,
     give_share: fn(&mut World, Entity, NodeShare),
     share_of: fn(&mut World, Entity) -> Option<NodeShare>,
     row_set: fn(Option<OfSystem>, &mut World) -> RowSet,
@@ -266,7 +266,7 @@ impl NodeRows {
 
     /// What it would have of bodies for itself, in a scene that lasts so long (s); else a row that it is for and that
     /// is none, and how many there are.
-    pub(super) fn wanted_shares(&self, duration: f64, world: &mut World) -> Result<Vec<WantedShare>, [usize; 2]> {
+    pub(super) fn wanted_shares(&self, duration: f64, world: &mut World) -> WantedShares {
         (self.wanted_shares)(self.of, duration, world)
     }
 

@@ -8,7 +8,7 @@ use crate::grids::{Grid, bits, grid};
 use crate::random::Random;
 use glam::DVec3;
 use sinew::backend::cpu::{Cpu, Instructions};
-use sinew::components::{Patches, Precision, Scheme};
+use sinew::components::{Precision, Scheme};
 use sinew::mesh::ElementKind;
 use sinew::{BackendChoice, Options, Simulation};
 use std::path::Path;
