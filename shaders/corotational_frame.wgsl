@@ -1,5 +1,5 @@
 // Hooke's law in a frame of two edges of each element; twin of src/materials/corotational_frame.rs. With
-// small_strain.wgsl. take_law, which is generated, gives an invocation the law of its element.
+// hooke.wgsl. take_law, which is generated, gives an invocation the law of its element.
 struct CorotationalFrame {
     shear: f32, // Pa
     bulk: f32, // Pa

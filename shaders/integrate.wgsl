@@ -1,7 +1,7 @@
 // Central differences in velocity form; twin of systems/integrate.rs. What a body has no column for is a line generated
 // in place of a fragment: damped, coefficient_of, accumulate_work, add_internal_work, add_up_internal_work,
 // add_to_step, add_step, forget_step.
-@group(0) @binding(1) var<storage, read> mass: array<f32>; // fictitious in a static analysis
+@group(0) @binding(1) var<storage, read> mass: array<f32>; // that resists acceleration
 @group(0) @binding(3) var<storage, read> constrained_axes: array<u32>;
 @group(0) @binding(4) var<storage, read_write> displacement: array<f32>;
 @group(0) @binding(5) var<storage, read_write> displacement_increment: array<f32>;

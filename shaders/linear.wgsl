@@ -1,4 +1,4 @@
-// Hooke's law for small strains; twin of src/materials/linear.rs. With small_strain.wgsl.
+// Hooke's law for small strains; twin of src/materials/linear.rs. With hooke.wgsl.
 struct Linear {
     shear: f32, // Pa
     bulk: f32, // Pa

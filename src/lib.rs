@@ -1,19 +1,4 @@
-//! Sinew: a data-oriented soft-tissue engine.
-//!
-//! Total Lagrangian explicit finite elements (Comas et al. 2008) as entities, components and ordered systems. A scene
-//! in RON becomes a [`Simulation`]: bodies, materials, constraints and loads are entities of a `bevy_ecs` world, what
-//! is numerous is a column of a component, and the step is a schedule of [`systems`] that run on the CPU or, as kernels
-//! put together from what the scene calls for, on a GPU.
-//!
-//! ```no_run
-//! # fn main() -> Result<(), sinew::Error> {
-//! let scene = sinew::SceneFile::load("scenes/cube_under_gravity.ron", &[])?;
-//! let mut simulation = sinew::Simulation::new(&scene, &sinew::Options::default())?;
-//! simulation.advance_to(0.1)?;
-//! println!("{:?}", simulation.displacements("cube")?.first());
-//! # Ok(())
-//! # }
-//! ```
+#![doc = include_str!("README.md")]
 
 pub mod components;
 pub mod driver;

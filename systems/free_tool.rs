@@ -48,7 +48,7 @@ const MOST_TURN: f64 = 0.5;
 struct TouchedColumns {
     rest: &'static RestPosition,
     mass: &'static Mass,
-    fictitious: Option<&'static FictitiousMass>,
+    inertial: Option<&'static InertialMass>,
     damping: Option<&'static DampingCoefficient>,
     axes: &'static ConstrainedAxes,
     internal: &'static InternalForce,
@@ -147,7 +147,7 @@ impl ToolStep<'_> {
             for &row in &met.rows {
                 let (at, node) = (row as usize, (number as u32, row));
                 let place = columns.rest.0[at] - reference + columns.u.vector(at);
-                let inertia = columns.fictitious.map_or_else(|| columns.mass.get(at), |mass| mass.get(at));
+                let inertia = columns.inertial.map_or_else(|| columns.mass.get(at), |mass| mass.get(at));
                 if center.distance_squared(place) > reach || inertia <= 0.0 {
                     continue;
                 }

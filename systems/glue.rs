@@ -1,6 +1,7 @@
 //! `glue`: points of bodies stay where they are tied to faces, until that breaks.
 
 mod kernels;
+mod solved;
 mod work;
 
 use super::node_slices::{BodyColumns, elements_stay};
@@ -13,6 +14,7 @@ use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
 use glam::DVec3;
+pub(crate) use solved::find as find_ties;
 use work::Work;
 
 /// Like `surface_contact`, with vectors and both signs: each node's next step is predicted, and the forces are found

@@ -62,7 +62,7 @@ struct ToolInStep {
 
 impl NodeSystem for Grasps {
     type Columns = (
-        (&'static Mass, Option<&'static FictitiousMass>, Option<&'static DampingCoefficient>),
+        (&'static Mass, Option<&'static InertialMass>, Option<&'static DampingCoefficient>),
         (&'static InternalForce, &'static ConstrainedAxes, &'static Displacement, &'static DisplacementIncrement),
         (&'static mut ExternalForce, &'static mut ToolHold),
     );

@@ -5,7 +5,7 @@ use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::system::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, NodeColumns};
+use crate::backend::cpu::{Cpu, NodeColumns, loads};
 use crate::backend::kernel::{Uniform, uniform};
 use crate::backend::node_stage::NodeStage;
 use crate::components::*;
@@ -50,7 +50,7 @@ impl NodeSystem for Gravity {
     }
 
     fn act<T: SimdScalar>(&self, acceleration: &[f64; 4], cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
-        let Some(external) = nodes.external.as_deref_mut() else { return };
+        let Some(external) = loads(&mut nodes.external) else { return };
         if self.factors.is_empty() {
             cpu.dispatch_widest(Pull { mass: nodes.mass, acceleration: acceleration.map(T::from_f64), external });
             return;

@@ -22,7 +22,7 @@ use std::sync::atomic::Ordering;
 /// beforehand, and forces act over the mean of both, (Δt + Δt')/2 in place of Δt in the push and in a. Constrained axes
 /// take the step that `boundary` wrote; nodes without mass are inactive.
 ///
-/// In a static analysis the same recursion relaxes: the mass is [`FictitiousMass`], a is one number for all nodes, and
+/// In a static analysis the same recursion relaxes: the mass is [`InertialMass`], a is one number for all nodes, and
 /// forces are multiplied with a force scale ([`Relaxation`]).
 pub fn system() -> System {
     System::built_in_nodes::<Body>(
@@ -41,7 +41,7 @@ pub fn system() -> System {
 
 impl NodeSystem for Body {
     type Columns = (
-        (&'static Mass, Option<&'static FictitiousMass>, Option<&'static DampingCoefficient>),
+        (&'static Mass, Option<&'static InertialMass>, Option<&'static DampingCoefficient>),
         (&'static InternalForce, Option<&'static ExternalForce>, &'static ConstrainedAxes),
         (&'static mut Displacement, &'static mut DisplacementIncrement, Option<&'static mut DisplacementCompensation>),
         (Option<&'static mut Work>, Option<&'static mut InternalWork>, Option<&'static PreviousPrescribedIncrement>),
@@ -76,7 +76,7 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
         let guarded = world.get::<InternalWork>(body).map(|_| place_in_buffer::<InternalWork>(body, world));
         let previous = world.get::<PreviousPrescribedIncrement>(body);
         let previous = previous.map(|_| place_in_buffer::<PreviousPrescribedIncrement>(body, world));
-        let fictitious = world.get::<FictitiousMass>(body).is_some();
+        let inertial = world.get::<InertialMass>(body).is_some();
         let compensated = world.get::<DisplacementCompensation>(body).is_some();
         let [external, damped, worked] = optional;
         let most = buffers.most_buffers().storage;
@@ -88,7 +88,7 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
                 with_optional(stage, [damped, worked], compensated, relaxed, (guarded, previous)).loaded(external);
             let stage = columns.iter().fold(stage, |stage, &name| {
                 let column = match name {
-                    Mass::NAME if fictitious => FictitiousMass::NAME,
+                    Mass::NAME if inertial => InertialMass::NAME,
                     FirstNonFinite::BUFFER => FirstNonFinite::NAME,
                     _ => name,
                 };

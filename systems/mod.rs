@@ -73,6 +73,7 @@ mod traction;
 pub use crate::backend::cpu::{Cpu, NodeColumns};
 pub use crate::math::SimdScalar;
 pub(crate) use gather::sum_corners;
+pub(crate) use glue::find_ties;
 pub(crate) use grab::{bytes_of as grab_bytes, uniform_of as grab_uniform};
 pub(crate) use grasp::{HeldNode, held_in_step, note_held};
 #[doc(hidden)]

@@ -6,7 +6,7 @@ use super::places_within;
 use super::rows::Rows;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, NodeColumns};
+use crate::backend::cpu::{Cpu, NodeColumns, loads};
 use crate::backend::kernel::{Fragment, Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
@@ -54,7 +54,7 @@ impl NodeSystem for NodalForce {
     }
 
     fn act<T: SimdScalar>(&self, force: &[f64; 4], _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
-        let Some(external) = nodes.external.as_deref_mut() else { return };
+        let Some(external) = loads(&mut nodes.external) else { return };
         let LoadedNodes { rows, factors } = &*self.on;
         for place in places_within(rows, nodes.first, nodes.mass.len()) {
             let row = rows[place] as usize - nodes.first;

@@ -4,6 +4,7 @@
 
 use super::node_system::{NodeRows, NodeSystem};
 use super::node_views::NodesAtRest;
+use super::rows::Rows;
 use crate::backend::cpu::NodeShare;
 use crate::components::*;
 use crate::error::Error;
@@ -33,23 +34,30 @@ pub(super) struct WantedShare {
     rows: Option<Vec<u32>>,
 }
 
-/// What calls for a system wants of its body.
+/// What calls for a system wants of its body; a row of a [list](Rows::List) that the body does not have, and how many
+/// rows it has.
 pub(super) fn wanted_shares<S: NodeSystem>(
     of_system: Option<OfSystem>,
     duration: f64,
     world: &mut World,
-) -> Vec<WantedShare> {
+) -> Result<Vec<WantedShare>, [usize; 2]> {
     let mut callers = world.query::<(Entity, &S, Option<&OfBody>, Option<&OfSystem>)>();
     let mut wanted = Vec::new();
     for (caller, system, of, _) in callers.iter(world).filter(|caller| caller.3.copied() == of_system) {
         let body = of.map_or(caller, |of| of.0);
         let Some(nodes) = NodesAtRest::of(world, body, duration) else { continue };
+        let all = nodes.mass.len();
+        if let Rows::List(rows) = system.rows()
+            && let Some(&row) = rows.iter().find(|&&row| row as usize >= all)
+        {
+            return Err([row as usize, all]);
+        }
         let rows = system.choose(&nodes);
         if S::OWN_NUMBERS > 0 || rows.is_some() {
             wanted.push(WantedShare { caller, body, numbers: S::OWN_NUMBERS, rows });
         }
     }
-    wanted
+    Ok(wanted)
 }
 
 /// What a system has of a body.
@@ -74,7 +82,9 @@ pub(crate) fn give_shares<'a>(
 ) -> Result<(), Error> {
     let mut of_bodies: BTreeMap<Entity, (usize, u32)> = BTreeMap::new();
     for (name, system) in systems {
-        for WantedShare { caller, body, numbers, rows } in system.wanted_shares(duration, world) {
+        let wanted =
+            system.wanted_shares(duration, world).map_err(|[row, nodes]| no_row(name, "is for", row, nodes))?;
+        for WantedShare { caller, body, numbers, rows } in wanted {
             let (first, choosing) = of_bodies.entry(body).or_default();
             let mut share = NodeShare { first: *first, numbers, bit: 0 };
             *first += numbers;
@@ -97,6 +107,11 @@ pub(crate) fn give_shares<'a>(
     Ok(())
 }
 
+/// What a system does with a row that is none of the body's.
+fn no_row(name: &str, does: &str, row: usize, nodes: usize) -> Error {
+    Error::Options(format!("`{name}` {does} the node of row {row}, and the body has {nodes} rows, from 0"))
+}
+
 /// Has the nodes of these rows chosen by the system of a bit, and no others of the body.
 ///
 /// # Errors
@@ -110,9 +125,7 @@ pub(crate) fn mark(
 ) -> Result<(), Error> {
     let nodes = world.get::<Mass>(body).map_or(0, |mass| mass.len());
     if let Some(row) = rows.clone().find(|&row| row >= nodes) {
-        return Err(Error::Options(format!(
-            "`{name}` chooses the node of row {row}, and the body has {nodes} rows, from 0"
-        )));
+        return Err(no_row(name, "chooses", row, nodes));
     }
     if world.get::<ChosenBy>(body).is_none() {
         world.entity_mut(body).insert(ChosenBy(vec![0; nodes]));

@@ -14,7 +14,7 @@ use glam::DVec3;
 pub(super) struct BodyColumns {
     pub rest: &'static RestPosition,
     pub mass: &'static Mass,
-    pub fictitious: Option<&'static FictitiousMass>,
+    pub inertial: Option<&'static InertialMass>,
     pub damping: Option<&'static DampingCoefficient>,
     pub axes: &'static ConstrainedAxes,
     pub internal: &'static InternalForce,
@@ -41,7 +41,7 @@ pub(super) struct NodeSlices<'a, T> {
 impl<'a, T: Scalar> NodeSlices<'a, T> {
     /// Of columns in that precision.
     pub fn of(columns: BodyColumnsItem<'a, '_>) -> Self {
-        let mass = columns.fictitious.map_or(&columns.mass.0, |mass| &mass.0);
+        let mass = columns.inertial.map_or(&columns.mass.0, |mass| &mass.0);
         Self {
             rest: &columns.rest.0,
             mass: mass.slice(),

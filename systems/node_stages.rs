@@ -1,6 +1,8 @@
 //! What a node system of one's own is on a GPU: a stage of the kernels of nodes, put together from what the system
 //! touches and what the scene gave as its parameters.
 
+mod parameters;
+
 use super::node_shares::ShareOf;
 use super::node_system::{NodeRows, NodeSystem};
 use crate::backend::Buffers;
@@ -9,7 +11,7 @@ use crate::backend::kernel::Fragment;
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
 use bevy_ecs::prelude::*;
-use serde_json::Value;
+use parameters::Parameters;
 use std::fmt::Write;
 
 /// One stage for each entity that calls for the system.
@@ -26,17 +28,18 @@ pub(super) fn derived_stages<S: NodeSystem + serde::Serialize>(
     // a column that shares its buffer has no name of its own there
     let alone = |column: &ColumnAccess| column.buffer == column.name && column.name != OwnNumbers::NAME;
     let columns: Vec<ColumnAccess> = touched.read_columns(world).into_iter().filter(alone).collect();
-    let callers: Vec<(Entity, Value, NodeShare)> = world
+    let callers: Vec<(Entity, Parameters, NodeShare)> = world
         .query::<(Entity, &S, Option<&OfBody>, Option<&ShareOf<S>>)>()
         .iter(world)
         .map(|(entity, system, of, share)| {
-            let parameters = serde_json::to_value(system).unwrap_or(Value::Null);
+            // what does not fit has been refused when the simulation was made
+            let parameters = Parameters::of(system).unwrap_or_default();
             (of.map_or(entity, |of| of.0), parameters, share.map(|share| share.share).unwrap_or_default())
         })
         .collect();
     let mut stages = Vec::new();
     for (body, parameters, share) in callers {
-        let (mut declared, bytes) = uniform_of(&parameters);
+        let Parameters { mut declared, bytes } = parameters;
         let rows = rows_of(body, world);
         let (call, chosen) = if_chosen(name, share);
         let mut stage = NodeStage::new(name.to_string(), call, body, rows, shader.clone());
@@ -77,6 +80,14 @@ pub(super) fn derived_stages<S: NodeSystem + serde::Serialize>(
     stages
 }
 
+/// Whether a shader can have what the scene gave a system as its parameters.
+///
+/// # Errors
+/// What it cannot have, by name.
+pub(super) fn check_parameters<S: NodeSystem + serde::Serialize>(world: &mut World) -> Result<(), String> {
+    world.query::<&S>().iter(world).try_for_each(|system| Parameters::of(system).map(|_| ()))
+}
+
 /// The function that kernels call: the system's own, or one that asks first whether it has chosen a node.
 fn if_chosen(name: &str, share: NodeShare) -> (String, Option<Fragment>) {
     if share.bit == 0 {
@@ -101,42 +112,4 @@ fn own_numbers(share: NodeShare, rows: u32, body: Entity, world: &World) -> Opti
          fn set_own(node: u32, i: u32, value: f32) {{\n    {own}[{all}u * node + {first}u + i] = value;\n}}\n"
     );
     Some(Fragment::new("generated: numbers of a system's own", text))
-}
-
-/// Declares a uniform `parameters` that holds what the scene gave, and gives its bytes: numbers, truth values, and
-/// vectors of two to four numbers, each member on a multiple of 16 bytes. None where there are none.
-fn uniform_of(parameters: &Value) -> (String, Vec<u8>) {
-    let (mut members, mut bytes) = (String::new(), Vec::new());
-    for (member, value) in parameters.as_object().into_iter().flatten() {
-        let Some((of, words)) = member_of(value) else {
-            let _ = writeln!(members, "    // {member} is nothing that a shader can have");
-            continue;
-        };
-        let _ = writeln!(members, "    @align(16) {member}: {of},");
-        bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
-        bytes.resize(bytes.len().next_multiple_of(16), 0);
-    }
-    if bytes.is_empty() {
-        return (String::new(), bytes);
-    }
-    let declared =
-        format!("struct Parameters {{\n{members}}}\n@group(0) @binding(0) var<uniform> parameters: Parameters;\n");
-    (declared, bytes)
-}
-
-/// What a value is in WGSL, and its words.
-fn member_of(value: &Value) -> Option<(String, Vec<u32>)> {
-    let real = |value: &Value| Some((value.as_f64()? as f32).to_bits());
-    match value {
-        Value::Bool(value) => Some(("u32".into(), vec![u32::from(*value)])),
-        Value::Number(number) if number.is_u64() => Some(("u32".into(), vec![u32::try_from(number.as_u64()?).ok()?])),
-        Value::Number(number) if number.is_i64() => {
-            Some(("i32".into(), vec![i32::try_from(number.as_i64()?).ok()?.cast_unsigned()]))
-        }
-        Value::Number(_) => Some(("f32".into(), vec![real(value)?])),
-        Value::Array(parts) if (2..=4).contains(&parts.len()) => {
-            Some((format!("vec{}<f32>", parts.len()), parts.iter().map(real).collect::<Option<_>>()?))
-        }
-        _ => None,
-    }
 }

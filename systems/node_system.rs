@@ -181,7 +181,7 @@ pub struct NodeRows {
     touches: fn() -> HostSystem,
     slopes: fn(Option<OfSystem>, f64, &mut World, &mut NodeSlopes) -> ForceSlopes,
     energy: fn(Option<OfSystem>, &mut World) -> Option<f64>,
-    wanted_shares: fn(Option<OfSystem>, f64, &mut World) -> Vec<WantedShare>,
+    wanted_shares: fn(Option<OfSystem>, f64, &mut World) -> Result<Vec<WantedShare>, [usize; 2]>,
     give_share: fn(&mut World, Entity, NodeShare),
     share_of: fn(&mut World, Entity) -> Option<NodeShare>,
     row_set: fn(Option<OfSystem>, &mut World) -> RowSet,
@@ -264,8 +264,9 @@ impl NodeRows {
         (self.energy)(self.of, world)
     }
 
-    /// What it would have of bodies for itself, in a scene that lasts so long (s).
-    pub(super) fn wanted_shares(&self, duration: f64, world: &mut World) -> Vec<WantedShare> {
+    /// What it would have of bodies for itself, in a scene that lasts so long (s); else a row that it is for and that
+    /// is none, and how many there are.
+    pub(super) fn wanted_shares(&self, duration: f64, world: &mut World) -> Result<Vec<WantedShare>, [usize; 2]> {
         (self.wanted_shares)(self.of, duration, world)
     }
 
@@ -330,7 +331,10 @@ fn slopes<S: NodeSystem>(
                 // a negative norm would take from the others; what is no number is the guards' business
                 let slopes = slopes.larger(ForceSlopes::NONE);
                 largest = largest.larger(slopes);
-                of_body.add(row, slopes);
+                // what acts on no node has no step
+                if row < nodes.mass.len() {
+                    of_body.add(row, slopes);
+                }
             });
         }
     }

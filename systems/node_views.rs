@@ -80,6 +80,15 @@ impl ForceSlopes {
     /// Of forces that are the same wherever nodes are and however they move.
     pub const NONE: Self = Self { stiffness: 0.0, damping: 0.0 };
 
+    /// Those of springs that push and let go, as a plate does that a body meets, in place of springs that always hold.
+    /// A node comes to be in it by d ≤ v Δt within a step and has ½ k d² there that nobody gave, at most κ Δt² of ½ m
+    /// v² and on the average a third of that. Where the nodes that touch have an eighth of the body, 1 % of the whole
+    /// energy are gained at κ Δt² = 0.24: at 0.245 of the step at which such a spring by itself is stable, of which a
+    /// `safety` of 0.9 takes (0.9/0.245)² = 13.5.
+    pub fn letting_go(self) -> Self {
+        Self { stiffness: 13.5 * self.stiffness, ..self }
+    }
+
     /// The larger of both, each by itself.
     pub fn larger(self, other: Self) -> Self {
         Self { stiffness: self.stiffness.max(other.stiffness), damping: self.damping.max(other.damping) }

@@ -12,7 +12,7 @@ use std::fmt::{Display, Formatter, Result};
 pub enum Rows<'a> {
     /// All.
     All,
-    /// Those of these rows, in any order, as long as the simulation lasts.
+    /// Those of these rows of the body, in any order, as long as the simulation lasts.
     List(&'a [u32]),
     /// Some, which are others from step to step.
     Changing,

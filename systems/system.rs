@@ -2,7 +2,7 @@
 
 use super::host_forces::HostSlopes;
 use super::node_pass::{NodePass, node_pass};
-use super::node_stages::derived_stages;
+use super::node_stages::{check_parameters, derived_stages};
 use super::node_system::{NodeRows, NodeSystem};
 use super::repeat::Repeat;
 use crate::backend::Buffers;
@@ -122,7 +122,7 @@ pub struct System {
     pub device: OnDevice,
     /// Whether it fetches what it reads from the device by itself, and says when it next has to run.
     pub(crate) observes: bool,
-    /// Steps between two runs (host systems only).
+    /// Steps between two runs (host systems only), at least 1.
     pub every: u64,
     /// Whether, in a world, a GPU has it.
     pub(crate) device_when: fn(&World) -> bool,
@@ -136,6 +136,8 @@ pub struct System {
     pub(crate) custom: bool,
     /// Reads its parameters and inserts them as a resource.
     pub(crate) parameters: Option<ReadParameters>,
+    /// Whether what it was given fits its twin on a GPU; what does not, as an error.
+    pub(crate) check: Option<CheckParameters>,
     /// How fast the forces of a system on the host grow, and what energy it holds, where it says so.
     pub(crate) slopes: Option<HostSlopes>,
     pub(crate) energy: Option<HeldEnergy>,
@@ -160,6 +162,9 @@ pub type Because = Arc<dyn Fn(&mut World) -> Option<String> + Send + Sync>;
 
 /// Turns what a scene gives as a system's parameters into a resource; else says why it cannot.
 type ReadParameters = fn(ron::Value, &mut World) -> Result<(), String>;
+
+/// Says why what calls for a system in a world does not fit its twin on a GPU, where it does not.
+type CheckParameters = fn(&mut World) -> Result<(), String>;
 
 /// What a system of one's own may return.
 pub trait Outcome: 'static {
@@ -216,6 +221,7 @@ impl System {
             repeats: |_| None,
             custom: true,
             parameters: None,
+            check: None,
             slopes: None,
             energy: None,
             state: None,
@@ -281,6 +287,7 @@ impl System {
     /// [chooses](NodeSystem::choose) nodes, it is called for these.
     pub fn with_shader<S: NodeSystem + serde::Serialize>(mut self, path: &'static str, text: &'static str) -> Self {
         let name = self.name.clone();
+        self.check = Some(check_parameters::<S>);
         self.device = OnDevice::Stages(Arc::new(move |world, buffers| {
             derived_stages::<S>(&name, &Fragment::new(path, text), world, buffers)
         }));

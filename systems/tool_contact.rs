@@ -85,7 +85,7 @@ type Touching = SmallVec<[Touch; ToolContacts::MOST]>;
 
 impl NodeSystem for ToolContacts {
     type Columns = (
-        (&'static Mass, Option<&'static FictitiousMass>, Option<&'static DampingCoefficient>),
+        (&'static Mass, Option<&'static InertialMass>, Option<&'static DampingCoefficient>),
         (&'static InternalForce, &'static ConstrainedAxes, &'static Displacement, &'static DisplacementIncrement),
         (&'static mut ExternalForce, &'static mut ToolTouch),
     );

@@ -2,6 +2,9 @@
 //! says.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod source;
+
+use source::code;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -23,12 +26,6 @@ fn files(folders: &[&str], ending: &str) -> BTreeMap<String, String> {
     }
     assert!(!found.is_empty(), "nothing in {folders:?}");
     found
-}
-
-/// Code without comments and without tests at its end.
-fn code(text: &str) -> String {
-    let text = text.split("#[cfg(test)]").next().unwrap();
-    text.lines().map(|line| line.split("//").next().unwrap()).collect::<Vec<_>>().join("\n")
 }
 
 /// Modules of the crate that code names: `crate::x`, and the first words of `crate::{x, y::z}`.

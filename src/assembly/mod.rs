@@ -137,7 +137,7 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     }
     suction::spawn(assembly, world, diagnostics);
     if scene.is_static() {
-        relaxation::insert_fictitious_masses(assembly, world);
+        relaxation::insert_inertial_masses(assembly, world);
     }
 }
 

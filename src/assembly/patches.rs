@@ -1,13 +1,11 @@
 //! Cutting blocks into patches, and where element forces stand.
 
-use crate::backend::cpu::IN_CACHE;
 use crate::components::*;
-use crate::elements::{Element, node_count, with_element_of};
+use crate::elements::node_count;
 use crate::math::LANES;
 use crate::math::lane_place;
 use crate::mesh::ElementKind;
 use bevy_ecs::prelude::*;
-use glam::DVec3;
 
 /// Neighbours of a block, patch by patch, in the order in which they are stored: the lanes of a group come from all
 /// over the patch, so that they seldom share a node and need not wait for each other's sums.
@@ -56,11 +54,7 @@ pub fn insert_forces(scheme: Scheme, body: Entity, world: &mut World) {
         let offset = length;
         match scheme {
             Scheme::Patches => {
-                let mut patches = cut(kind, connectivity);
-                let (block, shapes) = (world.get::<Block>(entity), world.get::<RestShape>(entity));
-                if let (Some(block), Some(shapes), Some(rest)) = (block, shapes, world.get::<RestPosition>(body)) {
-                    patches.places = places_at_rest(block, shapes, &patches, rest);
-                }
+                let patches = cut(kind, connectivity);
                 of_patches.push(entity);
                 places.extend(patches.nodes.iter().zip(0..).map(|(&node, slot)| (node, offset as u32 + 3 * slot)));
                 length += 3 * patches.nodes.len();
@@ -91,21 +85,6 @@ pub fn insert_forces(scheme: Scheme, body: Entity, world: &mut World) {
         }
     }
     world.entity_mut(body).insert((corners, ElementForce(Reals::zeros(precision, length))));
-}
-
-/// Where nodes are at rest, from the first of their patch, if kernels find rest shapes from that: shapes in f32 that
-/// fit no cache, of elements that can.
-fn places_at_rest(block: &Block, shapes: &RestShape, patches: &Patches, rest: &RestPosition) -> Vec<[f32; 3]> {
-    let Reals::F32(numbers) = &shapes.0 else { return Vec::new() };
-    if !with_element_of!(block, E => E::SPANNED_BY.is_some()) || size_of_val(&numbers[..]) <= IN_CACHE {
-        return Vec::new();
-    }
-    let of_patch = |ends: &[u32]| {
-        let nodes = &patches.nodes[ends[0] as usize..ends[1] as usize];
-        let first = nodes.first().map_or(DVec3::ZERO, |&node| rest.0[node as usize]);
-        nodes.iter().map(move |&node| (rest.0[node as usize] - first).as_vec3().to_array())
-    };
-    patches.starts.windows(2).flat_map(of_patch).collect()
 }
 
 /// By node what is told by place.

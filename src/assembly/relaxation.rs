@@ -1,4 +1,4 @@
-//! What a static analysis needs to know of meshes: fictitious masses, and how many steps a push takes from end to end.
+//! What a static analysis needs to know of meshes: inertial masses, and how many steps a push takes from end to end.
 
 use super::Assembly;
 use super::body_columns::stiffnesses;
@@ -19,9 +19,9 @@ const STEPS_AN_ELEMENT: f64 = 5.0;
 /// by them must follow, or comes to rest elsewhere.
 const SHEAR_STEPS_AN_ELEMENT: f64 = 10.0;
 
-/// Gives every body [`FictitiousMass`]: each element weighs ω²Δt²/4 of its mass, ω its frequency bound, so that Δt is
+/// Gives every body [`InertialMass`]: each element weighs ω²Δt²/4 of its mass, ω its frequency bound, so that Δt is
 /// the bound of the stable step of all elements, whatever their size, stiffness and density.
-pub(super) fn insert_fictitious_masses(assembly: &Assembly<'_>, world: &mut World) {
+pub(super) fn insert_inertial_masses(assembly: &Assembly<'_>, world: &mut World) {
     let time_step = world.resource::<Clock>().time_step;
     for parts in assembly.bodies.values() {
         let mut mass = vec![0.0; parts.node_rows.len()];
@@ -50,7 +50,7 @@ pub(super) fn insert_fictitious_masses(assembly: &Assembly<'_>, world: &mut Worl
         }
         of_springs(world, parts.entity, &mut mass);
         let mass = Reals::from_f64(assembly.precision, mass.into_iter());
-        world.entity_mut(parts.entity).insert(FictitiousMass(mass));
+        world.entity_mut(parts.entity).insert(InertialMass(mass));
     }
 }
 

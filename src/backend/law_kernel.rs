@@ -149,7 +149,7 @@ macro_rules! elastic_parts {
         pub(super) fn prerequisites(law: &ElasticLaw<f32>) -> Vec<Fragment> {
             let files = match law {
                 $(ElasticLaw::$law(_) => <materials::$law<f64> as Law>::PREREQUISITES,)*
-                ElasticLaw::CorotationalFrame(_) => &[Prerequisite::SmallStrain],
+                ElasticLaw::CorotationalFrame(_) => &[Prerequisite::Hooke],
                 ElasticLaw::UserLaw(_) => &[Prerequisite::FiniteStrain, Prerequisite::VolumeRatio],
             };
             files.iter().copied().map(fragment).collect()
@@ -162,7 +162,7 @@ fn fragment(support: Prerequisite) -> Fragment {
     match support {
         Prerequisite::FiniteStrain => shader!("finite_strain"),
         Prerequisite::VolumeRatio => shader!("volume_ratio"),
-        Prerequisite::SmallStrain => shader!("small_strain"),
+        Prerequisite::Hooke => shader!("hooke"),
         Prerequisite::Eigen => shader!("eigen"),
         Prerequisite::Elementary => shader!("elementary"),
         Prerequisite::Invariants => shader!("invariants"),

@@ -134,7 +134,7 @@ pub struct Relaxation {
     pub ramp_rate: f64,
     /// a = cΔt/2 of the damping c, the same for all nodes.
     pub damping: f64,
-    /// What forces are multiplied with, over the fictitious mass: how much the bound of the stable step is outdone.
+    /// What forces are multiplied with, over the inertial mass: how much the bound of the stable step is outdone.
     pub force_scale: f64,
 }
 

@@ -42,7 +42,7 @@ pub use column::{Column, Precision, Reals};
 pub use material::{Damping, Density};
 pub use nodes::{
     Authoring, ConstrainedAxes, DampingCoefficient, Displacement, DisplacementCompensation, DisplacementIncrement,
-    ElementForce, ExternalForce, FictitiousMass, InternalForce, Mass, RestPosition, Work,
+    ElementForce, ExternalForce, InertialMass, InternalForce, Mass, RestPosition, Work,
 };
 pub use observation::Energies;
 pub use patches::Scheme;

@@ -20,12 +20,12 @@ columns! {
     /// What rounding has made of the displacements too much (m), a vector a node, and then what of their steps,
     /// likewise. Exists in f32 where sums are compensated.
     DisplacementCompensation(Reals) = "displacement_compensation", State, Other, increments: SecondHalf;
-    /// Lumped mass (kg), a number a node; 0 parks the node.
+    /// Lumped mass (kg), a number a node; 0: the node is inactive.
     Mass(Reals) = "mass", State, Nodes(1);
     /// Mass (kg) that resists acceleration in place of the real one, which only weighs then: in static analyses the
     /// mass that makes every element's bound of the stable step the same, else the real one and what was added to it
     /// where a scene has mass scaled. A number a node.
-    FictitiousMass(Reals) = "fictitious_mass", State, Nodes(1);
+    InertialMass(Reals) = "inertial_mass", State, Nodes(1);
     /// Σ c m over a node's elements (kg/s): damping rate times mass. Exists when a material is damped.
     DampingCoefficient(Reals) = "damping_coefficient", State, Nodes(1);
     /// Force of the deformed elements on the node, sign such that M ü = R − F (N), a vector a node.

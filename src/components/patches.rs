@@ -29,19 +29,11 @@ pub struct Patches {
     pub interior: Vec<u32>,
     /// Elements' corners as places among their patch's nodes; laid out as [`Connectivity`](super::Connectivity).
     pub connectivity: Vec<u16>,
-    /// Where the nodes are at rest (m), from each patch's first node, if kernels find rest shapes from that
-    /// ([`Element::SPANNED_BY`](crate::elements::Element::SPANNED_BY)); else empty.
-    pub places: Vec<[f32; 3]>,
 }
 
 impl Patches {
     /// How many there are.
     pub fn count(&self) -> usize {
         self.starts.len().saturating_sub(1)
-    }
-
-    /// Where the nodes of a patch are at rest (m), if that is known.
-    pub fn places_of(&self, patch: usize) -> &[[f32; 3]] {
-        self.places.get(self.starts[patch] as usize..self.starts[patch + 1] as usize).unwrap_or_default()
     }
 }

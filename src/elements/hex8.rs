@@ -146,8 +146,6 @@ impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
     const FORCE_ROW: Option<usize> = Some(Self::STIFFNESS_ROW);
     const PRESSURE: PressureFrom = PressureFrom::Point;
     const SPECIALISED: bool = true;
-    // of a parallelepiped's sums over its corners ξ x is four edges long
-    const SPANNED_BY: Option<([usize; 4], f64)> = if SLOPES == 3 { Some(([0, 1, 3, 4], 0.25)) } else { None };
 
     /// Sums of the edges along ξ and along η, as SOFA's hexahedra have them.
     fn frame(points: &[DVec3]) -> Option<[DVec3; 2]> {

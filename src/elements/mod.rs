@@ -74,11 +74,6 @@ pub trait Element: Copy + Send + Sync + 'static {
     /// and without have them.
     const SPECIALISED: bool = false;
 
-    /// Four corners and a factor: with the edges e from the first to the others as rows, rows 0 to 8 of the rest shape
-    /// are the factor times cof e/det e. Kernels can find them anew in each step from where a patch's nodes are at
-    /// rest, which large bodies do whose rest shapes come from memory.
-    const SPANNED_BY: Option<([usize; 4], f64)> = None;
-
     /// The same element for simple shapes, of which fewer numbers need be known: what a block is made of if it
     /// [describes](Element::describes) all its elements. Itself, if there are none such.
     type Specialisation: Element;

@@ -23,7 +23,6 @@ impl Element for Tet4 {
     const PRESSURE: PressureFrom = PressureFrom::Point;
     const ELEMENTS_A_PATCH: usize = 1024;
     const SPECIALISED: bool = true;
-    const SPANNED_BY: Option<([usize; 4], f64)> = Some(([0, 1, 2, 3], 1.0));
 
     fn rest_shape(points: &[DVec3], _young: f64) -> [f64; MOST_ROWS] {
         let edges = DMat3::from_cols(points[1] - points[0], points[2] - points[0], points[3] - points[0]);

@@ -54,8 +54,8 @@ pub enum Prerequisite {
     FiniteStrain,
     /// θ = J − 1: for laws that have none of their own.
     VolumeRatio,
-    /// Stresses, pressures and energies of Hooke's law in small strains, which the law's `elastic_kinematics` finds.
-    SmallStrain,
+    /// Stresses, pressures and energies of Hooke's law in the strain that `elastic_kinematics` finds.
+    Hooke,
     /// Eigenvalues and axes.
     Eigen,
     /// Exponentials, logarithms and roots with the same digits on every device.

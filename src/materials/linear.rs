@@ -23,7 +23,7 @@ pub struct Linear<T: Send + Sync + 'static> {
 uniform!(Linear<f32> { shear, bulk });
 
 impl Law for Linear<f64> {
-    const PREREQUISITES: &'static [Prerequisite] = &[Prerequisite::SmallStrain];
+    const PREREQUISITES: &'static [Prerequisite] = &[Prerequisite::Hooke];
     const LARGE_STRAINS: bool = false;
     by_moduli!();
 }

@@ -24,7 +24,7 @@ pub struct StVenantKirchhoff<T: Send + Sync + 'static> {
 uniform!(StVenantKirchhoff<f32> { shear, bulk });
 
 impl Law for StVenantKirchhoff<f64> {
-    const PREREQUISITES: &'static [Prerequisite] = &[Prerequisite::FiniteStrain];
+    const PREREQUISITES: &'static [Prerequisite] = &[Prerequisite::FiniteStrain, Prerequisite::Hooke];
     by_moduli!();
 }
 

@@ -19,13 +19,11 @@ pub struct Scratch<T: SimdScalar> {
     pub read: Box<Rows<T>>,
     /// Added to: forces. The fourth number of a row has no meaning.
     pub sums: Box<Rows<T>>,
-    /// Read: places at rest, where rest shapes are found from them.
-    pub places: Box<Rows<T>>,
 }
 
 impl<T: SimdScalar> Default for Scratch<T> {
     fn default() -> Self {
-        Self { read: zeroed_box(), sums: zeroed_box(), places: zeroed_box() }
+        Self { read: zeroed_box(), sums: zeroed_box() }
     }
 }
 

@@ -75,7 +75,7 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
         Displacement::NAME,
         DisplacementIncrement::NAME,
         Mass::NAME,
-        FictitiousMass::NAME,
+        InertialMass::NAME,
         Work::NAME,
         SchemeLoss::NAME,
         OwnNumbers::NAME,
@@ -86,13 +86,10 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
     bring_to_host(world, |_, name| wanted.contains(&name))?;
     let rate = world.resource::<Clock>().rate();
     let mut sum = Energies::default();
-    let mut bodies = world.query::<(
-        Entity,
-        (&Mass, Option<&FictitiousMass>),
-        &DisplacementIncrement,
-        &ConstrainedAxes,
-        Option<&Work>,
-    )>();
+    let mut bodies =
+        world
+            .query::<(Entity, (&Mass, Option<&InertialMass>), &DisplacementIncrement, &ConstrainedAxes, Option<&Work>)>(
+            );
     for (_, (mass, inertia), step, axes, work) in bodies.iter(world) {
         // what moves is all that resists acceleration
         let mass = inertia.map_or(&mass.0, |inertia| &inertia.0);

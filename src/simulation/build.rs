@@ -53,7 +53,7 @@ impl Simulation {
             diagnostics
                 .error_at(
                     "analysis",
-                    "a path by arc length is followed in f64: differences of forces in f32 lead astray",
+                    "a path by arc length is followed in f64: differences of forces are too inexact in f32",
                 )
                 .note("run it with `--precision f64`; of a program, `Options::precision` is `Precision::F64`");
         }

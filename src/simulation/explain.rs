@@ -158,8 +158,11 @@ pub struct Effect {
 pub struct KernelInUse {
     /// The kernel.
     pub label: String,
-    /// The system it belongs to.
+    /// The systems it belongs to, in their order, as one text.
     pub system: String,
+    /// The same, one by one.
+    #[serde(skip)]
+    pub systems: Vec<String>,
     /// The WGSL function.
     pub entry: &'static str,
     /// Dispatches of a step.
@@ -281,13 +284,13 @@ impl Simulation {
             false => Default::default(),
         };
         let of_forces = |kernel: &&KernelInUse| {
-            let first = kernel.system.split(" + ").next();
-            let planned = plan.systems.iter().find(|planned| Some(planned.name.as_str()) == first);
+            let first = kernel.systems.first();
+            let planned = plan.systems.iter().find(|planned| Some(&planned.name) == first);
             planned.is_some_and(Planned::finds_forces)
         };
         let forces_on_gpu = on_gpu.then(|| kernels.iter().filter(of_forces).map(|kernel| kernel.times).sum());
         for system in &mut systems {
-            let own = kernels.iter().filter(|kernel| kernel.system.split(" + ").any(|name| name == system.name));
+            let own = kernels.iter().filter(|kernel| kernel.systems.contains(&system.name));
             system.kernels = own.count();
         }
         let columns = host_columns(&sizes, &mut self.world);

@@ -351,9 +351,9 @@ impl Simulation {
         follower.found.latest = if seen.square.is_finite() { seen.square } else { follower.found.latest };
         if lost && matches!(follower.policy, WhenUnstable::ScaleMass { .. }) {
             // what was added to removed elements goes with them
-            bring_to_host(&mut self.world, |_, name| [Mass::NAME, FictitiousMass::NAME].contains(&name))?;
+            bring_to_host(&mut self.world, |_, name| [Mass::NAME, InertialMass::NAME].contains(&name))?;
             mass_scaling::scale_masses(&mut self.world);
-            send_to_device(&mut self.world, |_, name| name == FictitiousMass::NAME)?;
+            send_to_device(&mut self.world, |_, name| name == InertialMass::NAME)?;
         }
         // what is no number is the guards' business
         let sound = seen.speed.is_finite() && seen.of_elements > 0.0;

@@ -251,7 +251,7 @@ pub(super) fn roots_of_mass(world: &World, bodies: &[Entity]) -> Vec<f64> {
     let mut roots = Vec::new();
     for &body in bodies {
         let (Some(mass), Some(axes)) = (world.get::<Mass>(body), world.get::<ConstrainedAxes>(body)) else { continue };
-        let inertia = world.get::<FictitiousMass>(body).map_or(&mass.0, |fictitious| &fictitious.0);
+        let inertia = world.get::<InertialMass>(body).map_or(&mass.0, |inertial| &inertial.0);
         let root = |i: usize| {
             let mass = inertia.get(i / 3);
             let free = axes[i / 3] >> (i % 3) & 1 == 0 && mass > 0.0;

@@ -62,7 +62,7 @@ pub(super) fn insert_columns(precision: Precision, world: &mut World) {
         .map(|(body, mass)| (body, (0..mass.len()).map(|node| mass.get(node)).collect()))
         .collect();
     for (body, mass) in bodies {
-        world.entity_mut(body).insert(FictitiousMass(Reals::from_f64(precision, mass.into_iter())));
+        world.entity_mut(body).insert(InertialMass(Reals::from_f64(precision, mass.into_iter())));
     }
 }
 
@@ -126,7 +126,7 @@ impl Additions {
 pub(super) fn scale_masses(world: &mut World) -> Added {
     let rate = world.resource::<Clock>().rate();
     let bodies: Vec<(Entity, Vec<Entity>)> = world
-        .query_filtered::<(Entity, &Authoring), With<FictitiousMass>>()
+        .query_filtered::<(Entity, &Authoring), With<InertialMass>>()
         .iter(world)
         .map(|(body, authoring)| (body, authoring.blocks.clone()))
         .collect();
@@ -137,7 +137,7 @@ pub(super) fn scale_masses(world: &mut World) -> Added {
         for block in blocks {
             sum.mass += spread(world, block, &mut added);
         }
-        let mut columns = world.query::<(&Mass, &mut FictitiousMass, &DisplacementIncrement)>();
+        let mut columns = world.query::<(&Mass, &mut InertialMass, &DisplacementIncrement)>();
         let Ok((mass, mut inertia, step)) = columns.get_mut(world, body) else { continue };
         for node in 0..count {
             let real = mass.get(node);

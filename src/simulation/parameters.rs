@@ -77,7 +77,7 @@ pub(super) fn hand_out(scene: &Scene, known: &Known<'_>, world: &mut World, diag
                 Some(_) | None => Ok(()),
             },
         };
-        if let Err(reason) = result {
+        if let Err(reason) = result.and_then(|()| system.check.map_or(Ok(()), |check| check(world))) {
             complain(format!("the parameters of `{name}` do not fit: {reason}"));
         }
     }

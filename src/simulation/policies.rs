@@ -70,7 +70,7 @@ impl Simulation {
 
     /// Adds mass to elements that do not allow the step any more, as long as the highest frequency does not.
     fn scale_mass(&mut self, follower: &mut Follower, time_step: f64, most: f64) -> Result<(), Error> {
-        let columns = [Mass::NAME, FictitiousMass::NAME];
+        let columns = [Mass::NAME, InertialMass::NAME];
         bring_to_host(&mut self.world, |_, name| columns.contains(&name))?;
         let wanted = time_step / follower.safety;
         for round in 0..=ROUNDS {
@@ -101,7 +101,7 @@ impl Simulation {
             }
         }
         self.warn_of_added_mass(follower.history.added_share);
-        send_to_device(&mut self.world, |_, name| name == FictitiousMass::NAME)
+        send_to_device(&mut self.world, |_, name| name == InertialMass::NAME)
     }
 
     /// Removes the elements with the highest frequencies, as many as are nearly as quick as the quickest; others follow

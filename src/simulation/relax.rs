@@ -117,7 +117,7 @@ impl Relaxing {
     /// What drives a static analysis, on columns of the host; `None` for a scene of motion.
     pub fn of(scene: &Scene, precision: Precision, world: &mut World) -> Option<Self> {
         let Analysis::Static(search) = scene.analysis else { return None };
-        // in units of the bound of the elements, which the fictitious masses make the same for all
+        // in units of the bound of the elements, which the inertial masses make the same for all
         let half = 0.5 * world.resource::<Clock>().time_step;
         let springs = world.resource::<Clock>().springs.is_some();
         // springs of contact are as stiff as the bound that their masses make, and no part of that eigenvalue

@@ -30,7 +30,7 @@ pub(super) struct Residual {
     pub square: f64,
     /// ‖R‖² over free axes and ‖F − R‖² over held ones (N²).
     pub scale_square: f64,
-    /// What rounding of the displacements may be of `square` (N²): a node's stiffness, which its fictitious mass
+    /// What rounding of the displacements may be of `square` (N²): a node's stiffness, which its inertial mass
     /// bounds, times the last digit of its largest displacement.
     pub rounding_square: f64,
     /// Rounding of a number, as a share of it.
@@ -125,7 +125,7 @@ impl State {
         let mut sum = Motion::default();
         let (mut work, mut weight) = (0.0, 0.0);
         for (now, before) in self.bodies.iter().zip(&before.bodies) {
-            let Some(mass) = world.get::<FictitiousMass>(now.entity) else { continue };
+            let Some(mass) = world.get::<InertialMass>(now.entity) else { continue };
             for i in free(now.entity, 0..now.place.len(), world) {
                 let moved = now.place[i] - before.place[i];
                 work += moved * (now.internal[i] - before.internal[i]);
@@ -160,7 +160,7 @@ pub(super) struct Motion {
 /// The axes among some along which a body's nodes move freely: not held, and not inactive.
 fn free(body: Entity, axes: Range<usize>, world: &World) -> impl Iterator<Item = usize> + '_ {
     let held = world.get::<ConstrainedAxes>(body);
-    let mass = world.get::<FictitiousMass>(body);
+    let mass = world.get::<InertialMass>(body);
     axes.filter(move |&i| {
         let held = held.is_some_and(|held| held[i / 3] >> (i % 3) & 1 == 1);
         !held && mass.is_some_and(|mass| mass.get(i / 3) > 0.0)
@@ -188,7 +188,7 @@ impl Residual {
                 Reals::F64(_) => f64::EPSILON,
             };
             let of_elements = rounding_of_elements(body.entity, world);
-            let mass = world.get::<FictitiousMass>(body.entity);
+            let mass = world.get::<InertialMass>(body.entity);
             let stiffness = |node: usize| mass.map_or(0.0, |mass| mass.get(node)) / (time_step * time_step);
             let mut node = (usize::MAX, 0.0);
             for i in free(body.entity, 0..body.load.len(), world) {

@@ -22,7 +22,7 @@ pub struct Scheduled<'a> {
 impl<'a> Scheduled<'a> {
     fn new(system: &'a System, because: String, world: &World) -> Self {
         let on_device = system.device.is_some() && (system.device_when)(world);
-        Self { system, because, every: system.every, interval: None, on_device }
+        Self { system, because, every: system.every.max(1), interval: None, on_device }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Solvers: what takes steps, one level above the systems. A solver keeps what it has to remember beside the columns,
 //! says how many steps may be taken together before it checks them, and does what has to be done about what it sees.
-//! What a simulation does with its solver is the same for all: see [`Simulation::steps_to`]. Only this file tells one
-//! from another.
+//! What a simulation does with its solver is the same for all (see [`Simulation::steps_to`]) but for the step itself:
+//! explicit and pseudo-steps are those of the plan, implicit ones solve for their end.
 
 use super::explain::SolverInUse;
 use super::follow::Follower;

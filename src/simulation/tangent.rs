@@ -61,7 +61,7 @@ impl<'w> Tangent<'w> {
 
     /// What [`Tangent::at_present`] reads that a run changes.
     pub const COLUMNS: [&'static str; 5] =
-        [Displacement::NAME, RestShape::NAME, ViscousMemory::NAME, Mass::NAME, FictitiousMass::NAME];
+        [Displacement::NAME, RestShape::NAME, ViscousMemory::NAME, Mass::NAME, InertialMass::NAME];
 
     /// K x (N) for displacements x, of any length: (F(u + hx) − F(u))/h.
     pub fn times(&mut self, x: &[f64], image: &mut [f64]) {

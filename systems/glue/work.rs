@@ -11,7 +11,7 @@ use glam::DVec3;
 
 /// How stiff ties are in implicit steps, as shares of contact count it: under a pull p, ends of elements of edge a and
 /// modulus M come apart by 2 a p/(100 M), a fiftieth of what the elements are drawn out by.
-const STIFF: f64 = 100.0;
+pub(super) const STIFF: f64 = 100.0;
 
 /// The nodes that ties act on, each once, by bodies and rows: places in [`Glue::bodies`], and rows there.
 pub(super) fn nodes_of(glue: &Glue) -> Vec<(usize, u32)> {

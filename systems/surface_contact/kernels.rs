@@ -288,7 +288,7 @@ impl ForeseenNodes {
     pub fn foresee(&self, label: &str, body: Entity, world: &World, buffers: &mut dyn Buffers) -> Kernel {
         let damped = world.get::<DampingCoefficient>(body).is_some();
         let relaxed = world.resource::<Clock>().relaxation.is_some();
-        let mass = if world.get::<FictitiousMass>(body).is_some() { FictitiousMass::NAME } else { Mass::NAME };
+        let mass = if world.get::<InertialMass>(body).is_some() { InertialMass::NAME } else { Mass::NAME };
         let foresee = Kernel::new(label, "surface_contact_foresee")
             .fragment(shader!("surface_contact_foresee"))
             .fragment(shader!("row"))

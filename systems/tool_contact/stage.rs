@@ -66,7 +66,7 @@ pub(in crate::systems) fn stage(
         .bind_uniform::<ToolRow>("tools", buffers.uniform(named("tools"), &tools))
         .bind(of.nodes, buffers.constants(named("nodes"), bytemuck::cast_slice(&places)))
         .of_rows(of.rows.to_vec());
-    let mass = if world.get::<FictitiousMass>(body).is_some() { FictitiousMass::NAME } else { Mass::NAME };
+    let mass = if world.get::<InertialMass>(body).is_some() { InertialMass::NAME } else { Mass::NAME };
     stage = stage.column(Mass::NAME, buffers.column(body, mass));
     for column in [ConstrainedAxes::NAME, Displacement::NAME, DisplacementIncrement::NAME, of.column] {
         stage = stage.column(column, buffers.column(body, column));

@@ -2,6 +2,7 @@
 //! Rust file, one WGSL file and one line of a list are all that may; beside them stand here those few that are about
 //! this law or element alone, and why.
 
+use super::source::code;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -62,10 +63,7 @@ fn engine() -> Vec<(String, String)> {
         if path.is_dir() {
             waiting.extend(std::fs::read_dir(&path).unwrap().map(|entry| entry.unwrap().path()));
         } else if !name.ends_with("tests.rs") && !name.contains("/tests/") {
-            let text = std::fs::read_to_string(&path).unwrap();
-            let code = text.split("#[cfg(test)]").next().unwrap();
-            found
-                .push((name, code.lines().map(|line| line.split("//").next().unwrap()).collect::<Vec<_>>().join("\n")));
+            found.push((name, code(&std::fs::read_to_string(&path).unwrap())));
         }
     }
     found

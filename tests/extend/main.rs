@@ -10,6 +10,9 @@ mod in_tree;
 mod laws;
 mod memory;
 mod plane;
+mod refused;
+#[path = "../source/mod.rs"]
+mod source;
 mod wind;
 
 use sinew::gpu_or_reason;

@@ -66,7 +66,7 @@ pub const SUPPORT: &[(&str, &str)] = &[
     ("work", "energies, in integrate"),
     ("kinematics", "strain measures"),
     ("finite_strain", "laws for large strains"),
-    ("small_strain", "Hooke's law, also in a frame that turns"),
+    ("hooke", "Hooke's law, in the strain that a law finds"),
     ("corotational_frame", "the co-rotational law in frames of edges"),
     ("nodal_mean", "the second half of nodal_volume"),
     ("point", "an element at an integration point"),

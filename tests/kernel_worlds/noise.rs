@@ -52,7 +52,7 @@ pub fn randomize(world: &mut World, seed: u64) {
         if let Some(mut mass) = world.get_mut::<Mass>(entity) {
             mass.set(3, 0.0);
         }
-        if let Some(mut mass) = world.get_mut::<FictitiousMass>(entity) {
+        if let Some(mut mass) = world.get_mut::<InertialMass>(entity) {
             mass.set(3, 0.0);
         }
         if let Some(mut axes) = world.get_mut::<ConstrainedAxes>(entity) {

@@ -65,7 +65,7 @@ fn foreseen(world: &World, body: Entity, row: u32) -> Foreseen {
     let row = row as usize;
     let force =
         world.get::<ExternalForce>(body).unwrap().vector(row) - world.get::<InternalForce>(body).unwrap().vector(row);
-    let mass = match world.get::<FictitiousMass>(body) {
+    let mass = match world.get::<InertialMass>(body) {
         Some(mass) => mass.get(row),
         None => world.get::<Mass>(body).unwrap().get(row),
     };

@@ -83,8 +83,8 @@ fn compare_motion(pair: &mut Pair, effects: &Effects, prescribed: f64) {
     // d ← ((1 − a) d + Δt² (R − F)/m)/(1 + a): twelve roundings of the old step, the push and the new step
     let step_bound = |pair: &Pair, body: Entity, i: usize| {
         let dt = pair.before().resource::<Clock>().time_step;
-        let fictitious = pair.before().get::<FictitiousMass>(body).map(|mass| 0.5 * mass.get(i / 3));
-        let mass = fictitious.unwrap_or_else(|| pair.before().get::<Mass>(body).unwrap().get(i / 3));
+        let inertial = pair.before().get::<InertialMass>(body).map(|mass| 0.5 * mass.get(i / 3));
+        let mass = inertial.unwrap_or_else(|| pair.before().get::<Mass>(body).unwrap().get(i / 3));
         let old = pair.before().get::<DisplacementIncrement>(body).unwrap().get(i).abs();
         let push = if mass > 0.0 { dt * dt * 0.02 / mass } else { 0.0 };
         let constrained = pair.before().get::<ConstrainedAxes>(body).unwrap()[i / 3] >> (i % 3) & 1 == 1;
@@ -157,7 +157,7 @@ fn compare_noticed(pair: &mut Pair) {
 }
 
 #[test]
-fn a_node_without_a_mass_that_is_a_number_is_not_parked_in_silence() {
+fn a_node_without_a_mass_that_is_a_number_is_not_inactive_in_silence() {
     for bits in [0x7fc0_0000_u32, 0xffc0_0000, 0x7f80_0000] {
         let Some(pair) = run("integrate", &Effects::default(), 3, |world| {
             for body in entities::<Mass>(world) {

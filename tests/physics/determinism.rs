@@ -156,38 +156,6 @@ fn both_schemes_move_alike() {
     }
 }
 
-/// Bodies in f32 whose rest shapes are larger than caches find them from places at rest, which two passes do not.
-/// Places are known to 2⁻²⁴ of a patch of ten edges, so that shapes differ by some 1e-6.
-#[test]
-#[ignore = "long"]
-fn rest_shapes_from_places_are_those_that_are_read() {
-    for (element, cells) in [("Tet4", 33), ("Hex8", 58)] {
-        let text = format!(
-            "(duration: 1, materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
-            bodies: {{\"b\": (mesh: Box(size: (1, 1.5, 0.7), cells: ({cells}, {cells}, {cells}), elements: {element}),
-                material: \"m\", translate: (5, 0, 0), rotate: (10, 20, 30), spin: (0, 20, 30))}},
-            integration: (step: 1e-4))"
-        );
-        let [patches, two_pass] = [Scheme::Patches, Scheme::TwoPass].map(|scheme| {
-            let options = Options {
-                scheme: Some(scheme),
-                backend: BackendChoice::Cpu,
-                precision: Precision::F32,
-                ..Options::default()
-            };
-            let mut simulation = Configuration { name: "CPU", options }.start_in(&text, Path::new("."));
-            let world = simulation.world_mut();
-            let known = world.query::<&Patches>().iter(world).filter(|patches| !patches.places.is_empty()).count();
-            assert_eq!(known, usize::from(scheme == Scheme::Patches), "{element}");
-            simulation.advance(30).unwrap();
-            simulation.displacements("b").unwrap()
-        });
-        let error = largest_difference(&patches, &two_pass);
-        println!("{element}: {error:.1e}");
-        assert!(error < 3e-6 && patches != two_pass, "{element}: {error:e}");
-    }
-}
-
 /// Tetrahedra that share no node: more nodes than a workgroup has room for. The others move by patches.
 #[test]
 fn patches_of_too_many_nodes_are_summed_in_two_passes_on_a_gpu() {

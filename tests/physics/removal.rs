@@ -132,7 +132,7 @@ fn island_falls_with_exactly_g_and_mass_is_booked() {
 }
 
 #[test]
-fn nodes_without_elements_are_parked() {
+fn nodes_without_elements_are_inactive() {
     for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
         let rest = "loads: [Gravity(acceleration: (0, 0, -9.81)), NodalForce(on: All, force: (1, 0, 0))],
             removal: [(on: Box(min: (4, 0, 0), max: (6, 1, 1)), when: At(0.05))]";

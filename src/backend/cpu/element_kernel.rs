@@ -13,8 +13,7 @@ use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::materials::{Elastic, ElasticLaw, FLATTEST, NeoHookean};
 use crate::math::{LANES, Real, Scratch, SimdScalar};
 pub(super) use corners::{corner_registers, group_vectors};
-use fetch::AHEAD;
-pub use fetch::IN_CACHE;
+use fetch::{AHEAD, IN_CACHE};
 use in_own_module::InOwnModule;
 use patch_local::{PatchLocal, part, parts};
 use pulp::{Simd, WithSimd};
@@ -153,10 +152,6 @@ const VISCOSITY: u8 = 2;
 const GENERIC: u8 = 4;
 /// There is no such kernel for machines without vector registers.
 const VECTORS: u8 = 8;
-/// Rest shapes are found from places at rest ([`SPANNED_BY`](Element::SPANNED_BY)).
-const FROM_PLACES: u8 = 16;
-/// How many rows of a rest shape these give, the first ones.
-const GRADIENTS: usize = 9;
 
 struct BlockRun<'a, 'n, E, T: SimdScalar> {
     cpu: &'a Cpu,
@@ -167,17 +162,7 @@ struct BlockRun<'a, 'n, E, T: SimdScalar> {
 }
 
 impl<E: Element> BlockRun<'_, '_, E, f32> {
-    /// Whether it is known where the nodes of all patches are at rest.
-    fn knows_places(&self) -> bool {
-        self.columns.patches.is_some_and(|patches| !patches.places.is_empty())
-    }
-
     fn run_neo_hookean(self, elastic: &NeoHookean<f32>) -> Vec<usize> {
-        // a constant, so that no such kernels are made of elements that four corners do not span
-        let plain = self.law.fibres.is_none() && self.law.prony.is_empty();
-        if const { E::SPANNED_BY.is_some() } && plain && self.knows_places() {
-            return self.run::<_, FROM_PLACES>(elastic);
-        }
         match (self.law.fibres.is_some(), !self.law.prony.is_empty()) {
             (false, false) => self.run::<_, 0>(elastic),
             (true, false) => self.run::<_, FIBRES>(elastic),
@@ -344,16 +329,6 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
         let (displacements, theta) = self.at_corners(simd, elastic, group, at, scratch);
         let u = E::prepare(&displacements);
         let rest_shape = &self.rest_shape[group * E::ROWS..][..E::ROWS];
-        let gradients = self.gradients_from_places(simd, group, at, scratch);
-        macro_rules! number {
-            ($row:expr) => {
-                match &gradients {
-                    Some(gradients) if $row < GRADIENTS => gradients[$row],
-                    // the volume tells what is no element: what fills up the last group, and what has been removed
-                    _ => T::load(simd, &rest_shape[$row][at..]),
-                }
-            };
-        }
         let shared = match E::PRESSURE {
             PressureFrom::Point => zero,
             PressureFrom::MeanOverPoints => {
@@ -369,7 +344,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
                 &u,
                 point,
                 #[inline(always)]
-                |row: usize| number!(row),
+                |row: usize| T::load(simd, &rest_shape[row][at..]),
             );
             let (stress, j) = self.stress(simd, law, group, at, point, &state.gradient, shared);
             E::add_stress(&mut forces, point, &state, &stress);
@@ -379,14 +354,14 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
             let j = volume_ratio::<E, T, S>(simd, &u, rest_shape, point, at);
             worst = worst.max(least - j);
         }
-        let worst = worst * number!(E::VOLUME_ROW);
+        let worst = worst * T::load(simd, &rest_shape[E::VOLUME_ROW][at..]);
         let mut out = [[zero; 3]; MOST_NODES];
         E::store_forces(
             &u,
             &forces,
             #[inline(always)]
             |row: usize| {
-                let number = number!(row);
+                let number = T::load(simd, &rest_shape[row][at..]);
                 // forces are proportional to these
                 let scales = row == E::FORCE_ROW.unwrap_or(E::VOLUME_ROW) || row == E::VOLUME_ROW;
                 if scales && self.inverted_go { worst.if_positive(zero, number) } else { number }

@@ -11,10 +11,11 @@ mod own_kernels;
 mod strain_kernel;
 mod volume_kernel;
 
-pub use element_kernel::{BlockColumns, IN_CACHE, PatchInterior, kernel_effects, run_block, run_block_fast};
+pub use element_kernel::{BlockColumns, PatchInterior, kernel_effects, run_block, run_block_fast};
 pub use guard_kernel::{BlockSums, GuardColumns, run_guard};
 pub use law::BlockLaw;
 pub use law_copies::{LawCopies, LawParameters, PerCopyLaw};
+pub(crate) use node_kernel::loads;
 pub use node_kernel::{Foreseen, IntegrationCoefficients, NodeColumns, NodeShare, OwnRows, Touches, move_nodes};
 pub use own_kernels::OwnKernels;
 pub use strain_kernel::{Kept, Strain, StrainColumns, Visit, strains};
@@ -114,6 +115,12 @@ impl Cpu {
             (_, widest) => widest,
         };
         Self { pool, alone: OnceLock::new(), threads, arch, arenas: Arenas::default() }
+    }
+
+    /// The same threads and instructions, for what has no hold on the world while it works.
+    pub(crate) fn twin(&self) -> Self {
+        let Self { pool, threads, arch, .. } = self;
+        Self { pool: pool.clone(), alone: OnceLock::new(), threads: *threads, arch: *arch, arenas: Arenas::default() }
     }
 
     /// How many threads work.

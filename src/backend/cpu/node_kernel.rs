@@ -6,6 +6,7 @@ mod one_by_one;
 mod own_rows;
 
 pub use integration_coefficients::{Foreseen, IntegrationCoefficients};
+pub(crate) use node_columns::loads;
 pub use node_columns::{NodeColumns, Touches};
 pub use own_rows::{NodeShare, OwnRows};
 

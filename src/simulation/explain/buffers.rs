@@ -68,7 +68,7 @@ pub fn host_columns(sizes: &Sizes, world: &mut World) -> Vec<Buffer> {
     }
     for (entity, patches) in world.query::<(Entity, &Patches)>().iter(world) {
         let nodes = size_of_val(patches.starts.as_slice()) + size_of_val(patches.nodes.as_slice());
-        let bytes = nodes + size_of_val(patches.connectivity.as_slice()) + size_of_val(patches.places.as_slice());
+        let bytes = nodes + size_of_val(patches.connectivity.as_slice());
         columns.push(column(entity, "patches", bytes as u64));
     }
     columns.sort_by(|a, b| a.of.cmp(&b.of).then(b.bytes.cmp(&a.bytes)).then(a.name.cmp(&b.name)));

@@ -237,7 +237,7 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, can_be_held: bool,
         },
         Effect {
             name: "relaxation",
-            on: entity.contains::<FictitiousMass>().then(|| "to rest, with masses and damping chosen for it".into()),
+            on: entity.contains::<InertialMass>().then(|| "to rest, with masses and damping chosen for it".into()),
             turned_on_by: "`analysis: Static()`".into(),
         },
         Effect {

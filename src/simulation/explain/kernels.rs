@@ -32,18 +32,18 @@ pub fn describe(plan: &Plan, systems: &[&System], sizes: &Sizes, world: &mut Wor
     let mut described = Vec::new();
     for (kernels, pass) in kernels.iter().zip(plan.passes(true)) {
         for kernel in kernels {
-            let system = match pass.over == Over::Nodes && !kernel.systems.is_empty() {
-                true => kernel.systems.join(" + "),
-                false => plan.systems[pass.systems[0]].name.clone(),
+            let systems = match pass.over == Over::Nodes && !kernel.systems.is_empty() {
+                true => kernel.systems.iter().map(ToString::to_string).collect(),
+                false => vec![plan.systems[pass.systems[0]].name.clone()],
             };
             let times = pass.repeat.as_ref().filter(|_| kernel.repeated).map_or(1, |repeat| repeat.times);
-            described.push(KernelInUse { times, ..in_use(system, kernel, &mut counter)? });
+            described.push(KernelInUse { times, ..in_use(systems, kernel, &mut counter)? });
         }
     }
     Ok(OnGpu { kernels: described, buffers: counter.buffers, dispatched })
 }
 
-fn in_use(system: String, kernel: &Kernel, counter: &mut Counter<'_>) -> Result<KernelInUse, Error> {
+fn in_use(systems: Vec<String>, kernel: &Kernel, counter: &mut Counter<'_>) -> Result<KernelInUse, Error> {
     let composed = counter.compose(kernel).map_err(GpuError::from)?;
     let entry = composed.entry(kernel.entry);
     let fragments: Vec<Piece> = kernel
@@ -66,7 +66,8 @@ fn in_use(system: String, kernel: &Kernel, counter: &mut Counter<'_>) -> Result<
     });
     Ok(KernelInUse {
         label: kernel.label.clone(),
-        system,
+        system: systems.join(" + "),
+        systems,
         entry: kernel.entry,
         times: 1,
         threads: kernel.threads,

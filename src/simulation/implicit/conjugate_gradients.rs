@@ -65,7 +65,7 @@ pub(super) fn solve(
     x.fill(0.0);
     residual.copy_from_slice(b);
     let enough = stop.tolerance * sums.norm(b);
-    preconditioner.apply(residual, preconditioned);
+    preconditioner.apply(sums.cpu(), residual, preconditioned);
     direction.copy_from_slice(preconditioned);
     let mut product = sums.dot(residual, preconditioned);
     let ended = |iterations, ended| Ok(Solved { iterations, ended });
@@ -82,10 +82,8 @@ pub(super) fn solve(
             return ended(iteration + 1, Ended::NegativeCurvature);
         }
         let length = product / curvature;
-        for i in 0..x.len() {
-            x[i] += length * direction[i];
-            residual[i] -= length * image[i];
-        }
+        x.iter_mut().zip(&*direction).for_each(|(x, direction)| *x += length * direction);
+        residual.iter_mut().zip(&*image).for_each(|(residual, image)| *residual -= length * image);
         let left = sums.norm(residual);
         if !left.is_finite() {
             return ended(iteration + 1, Ended::NotFinite);
@@ -93,7 +91,7 @@ pub(super) fn solve(
         if left <= enough {
             return ended(iteration + 1, Ended::Converged);
         }
-        preconditioner.apply(residual, preconditioned);
+        preconditioner.apply(sums.cpu(), residual, preconditioned);
         let next = sums.dot(residual, preconditioned);
         let turn = next / product;
         product = next;

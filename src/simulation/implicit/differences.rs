@@ -41,15 +41,14 @@ pub(super) fn difference(
         image.fill(0.0);
         return Ok(());
     }
-    for axis in 0..w.len() {
-        elsewhere[axis] = w[axis] + reach * p[axis];
-    }
+    elsewhere.iter_mut().zip(w).zip(p).for_each(|((elsewhere, w), p)| *elsewhere = w + reach * p);
     let at = steps_to(formula, h, motion, elsewhere, steps, trial);
     trial.forces_without_springs(elsewhere, at, image)?;
     let factor = formula.stiffness() / reach;
-    for axis in 0..w.len() {
-        image[axis] = factor * (image[axis] - net[axis]);
-    }
+    image.iter_mut().zip(net).for_each(|(image, net)| *image = factor * (*image - net));
     trial.springs.add_product(formula.stiffness(), formula.step(), p, image);
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

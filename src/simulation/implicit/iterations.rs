@@ -8,7 +8,7 @@ use super::device::{OnDevice, in_words};
 use super::kept::Kept;
 use super::newton::{Newton, Settings, Workspace};
 use super::preconditioner::{Operator, Preconditioner, of_name};
-use super::report::ImplicitSteps;
+use super::report::{Durations, ImplicitSteps};
 use super::sums::Sums;
 use super::trial::Trial;
 use crate::backend::cpu::Cpu;
@@ -29,6 +29,7 @@ pub(super) struct Iterations {
     pub kept: Kept,
     pub sums: Sums,
     pub report: ImplicitSteps,
+    durations: Durations,
     /// What solves on a device, once it has.
     pub on_device: Option<OnDevice>,
 }
@@ -46,6 +47,7 @@ impl Iterations {
             kept: Kept::default(),
             sums: Sums::on(world.resource::<Cpu>()),
             report: ImplicitSteps::default(),
+            durations: Durations::default(),
             on_device: None,
         }
     }
@@ -76,7 +78,10 @@ impl Iterations {
     pub fn end_step(&mut self, started: Instant) {
         self.report.steps += 1;
         self.report.preconditioner_bytes = self.preconditioner.holds().1.iter().map(|(_, bytes)| bytes).sum();
-        self.report.longest_step = self.report.longest_step.max(started.elapsed().as_secs_f64());
+        let seconds = started.elapsed().as_secs_f64();
+        self.durations.count(seconds);
+        self.report.longest_step = self.report.longest_step.max(seconds);
+        self.report.most_steps = self.durations.of_most().min(self.report.longest_step);
     }
 
     /// What it does in words after `first`, and what it holds at the present state, for `explain`. The first step

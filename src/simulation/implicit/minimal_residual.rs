@@ -40,7 +40,7 @@ pub(super) fn solve(
     let [v_before, v, z, image, w_before, w, z_next] = vectors;
     x.fill(0.0);
     v.copy_from_slice(b);
-    preconditioner.apply(v, z);
+    preconditioner.apply(sums.cpu(), v, z);
     let mut gamma = sums.dot(z, v).max(0.0).sqrt();
     let (first, mut eta, mut gamma_before) = (gamma, gamma, 1.0);
     let (mut cosines, mut sines) = ([1.0, 1.0], [0.0, 0.0]);
@@ -57,7 +57,7 @@ pub(super) fn solve(
             let next = image[i] - delta / gamma * v[i] - gamma / gamma_before * v_before[i];
             (v_before[i], v[i]) = (v[i], next);
         }
-        preconditioner.apply(v, z_next);
+        preconditioner.apply(sums.cpu(), v, z_next);
         let gamma_next = sums.dot(z_next, v).max(0.0).sqrt();
         pivot = if iteration == 1 { delta } else { delta - gamma * gamma / pivot };
         largest = largest.max(delta.abs());

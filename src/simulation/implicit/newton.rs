@@ -344,8 +344,8 @@ impl Newton<'_, '_> {
         }
         let times = |x: &[f64], image: &mut [f64]| -> Result<(), Error> {
             difference(trial, of_step, (w, net), elsewhere, steps, x, image)?;
-            for (axis, image) in image.iter_mut().enumerate() {
-                *image = if motion.free[axis] { *image + inertia[axis] * x[axis] } else { 0.0 };
+            for (((image, x), inertia), &free) in image.iter_mut().zip(x).zip(&*inertia).zip(&motion.free) {
+                *image = if free { *image + inertia * x } else { 0.0 };
             }
             Ok(())
         };

@@ -4,6 +4,7 @@ mod block_jacobi;
 mod columns;
 mod two_level;
 
+use crate::backend::cpu::Cpu;
 use crate::scene::schema;
 use bevy_ecs::prelude::*;
 use block_jacobi::BlockJacobi;
@@ -41,8 +42,9 @@ pub(in crate::simulation) struct SpringSlope<'a> {
 /// An approximate inverse B of the operator: symmetric and positive definite on free axes, the same from one residual
 /// to the next of a solve.
 pub(in crate::simulation) trait Preconditioner: Send + Sync {
-    /// z = B r (m) of a residual r (N), both over all axes of all bodies; where an axis is not free, r and z are 0.
-    fn apply(&mut self, residual: &[f64], z: &mut [f64]);
+    /// z = B r (m) of a residual r (N), both over all axes of all bodies; where an axis is not free, r and z are 0. The
+    /// same for any number of threads.
+    fn apply(&mut self, cpu: &Cpu, residual: &[f64], z: &mut [f64]);
 
     /// Follows an operator that may have changed, before each solve: where nodes have gone, which elements are left,
     /// how long the step is. What changes little may stay as it was.
@@ -73,7 +75,7 @@ pub(in crate::simulation) trait Preconditioner: Send + Sync {
 pub(in crate::simulation) struct Identity;
 
 impl Preconditioner for Identity {
-    fn apply(&mut self, residual: &[f64], z: &mut [f64]) {
+    fn apply(&mut self, _: &Cpu, residual: &[f64], z: &mut [f64]) {
         z.copy_from_slice(residual);
     }
 
@@ -93,7 +95,7 @@ pub(in crate::simulation) struct Mass {
 }
 
 impl Preconditioner for Mass {
-    fn apply(&mut self, residual: &[f64], z: &mut [f64]) {
+    fn apply(&mut self, _: &Cpu, residual: &[f64], z: &mut [f64]) {
         for ((z, r), per_inertia) in z.iter_mut().zip(residual).zip(&self.per_inertia) {
             *z = r * per_inertia;
         }

@@ -5,7 +5,7 @@ use super::axes::Axes;
 use super::preconditioner::SpringSlope;
 use crate::components::{Clock, SpringForces, TouchingSpring};
 use crate::error::Error;
-use crate::systems::{find_surface_springs, find_thread_springs, find_tool_springs, seek_surfaces};
+use crate::systems::{find_surface_springs, find_thread_springs, find_ties, find_tool_springs, seek_surfaces};
 use bevy_ecs::prelude::*;
 
 /// What springs resist of a motion at least, as a share of what they would across its way, beyond rounding.
@@ -15,6 +15,8 @@ const RESISTS: f64 = 1e-12;
 #[derive(Default)]
 pub(super) struct Springs {
     touching: Vec<TouchingSpring>,
+    /// Ties that hold, whose forces the columns of forces have: for preconditioners.
+    ties: Vec<TouchingSpring>,
 }
 
 impl Springs {
@@ -30,6 +32,7 @@ impl Springs {
     /// Finds those that touch where nodes are, after the systems have found forces there.
     pub fn find(&mut self, world: &mut World, axes: &Axes) {
         self.touching.clear();
+        self.ties.clear();
         if world.resource::<Clock>().springs.is_none() {
             return;
         }
@@ -37,6 +40,7 @@ impl Springs {
         find_surface_springs(world, first_axis, &mut self.touching);
         find_tool_springs(world, first_axis, &mut self.touching);
         find_thread_springs(world, first_axis, &mut self.touching);
+        find_ties(world, first_axis, &mut self.ties);
     }
 
     /// Takes a share of their forces from the residual (N) of free axes.
@@ -58,10 +62,12 @@ impl Springs {
         }
     }
 
-    /// Those that touch, with a share of their slopes as [`add_product`](Self::add_product) has it (N/m).
+    /// Those that touch and ties that hold, with a share of their slopes as [`add_product`](Self::add_product) has it
+    /// (N/m).
     pub fn slopes(&self, share: f64, step: f64) -> Vec<SpringSlope<'_>> {
         let slope = |spring: &TouchingSpring| (spring.slopes[0] + spring.slopes[1] * step) * share;
-        self.touching.iter().map(|spring| SpringSlope { parts: &spring.parts, slope: slope(spring) }).collect()
+        let all = self.touching.iter().chain(&self.ties);
+        all.map(|spring| SpringSlope { parts: &spring.parts, slope: slope(spring) }).collect()
     }
 
     /// Whether they resist a motion of all axes (m).

@@ -2,8 +2,6 @@
 
 use crate::backend::cpu::Cpu;
 use crate::simulation::frequency::dot as dot_of_block;
-use rayon::prelude::*;
-use std::sync::Arc;
 
 /// Numbers of a block.
 const BLOCK: usize = 3072;
@@ -11,12 +9,16 @@ const BLOCK: usize = 3072;
 const WORTH_SHARING: usize = 64;
 
 /// What adds up, on the threads of a run.
-#[derive(Clone)]
-pub(super) struct Sums(Option<Arc<rayon::ThreadPool>>);
+pub(super) struct Sums(Cpu);
 
 impl Sums {
     pub fn on(cpu: &Cpu) -> Self {
-        Self(cpu.pool())
+        Self(cpu.twin())
+    }
+
+    /// These threads.
+    pub fn cpu(&self) -> &Cpu {
+        &self.0
     }
 
     /// a·b.
@@ -26,13 +28,11 @@ impl Sums {
             let range = block * BLOCK..a.len().min((block + 1) * BLOCK);
             dot_of_block(&a[range.clone()], &b[range])
         };
-        match self.0.as_ref().filter(|_| blocks >= WORTH_SHARING) {
-            None => pairwise(0, blocks, &of),
-            Some(pool) => {
-                let sums: Vec<f64> = pool.install(|| (0..blocks).into_par_iter().map(of).collect());
-                pairwise(0, blocks, &|block| sums[block])
-            }
+        if blocks < WORTH_SHARING {
+            return pairwise(0, blocks, &of);
         }
+        let sums = self.0.map(blocks, of);
+        pairwise(0, blocks, &|block| sums[block])
     }
 
     /// ‖a‖.

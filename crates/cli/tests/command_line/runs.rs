@@ -135,7 +135,7 @@ fn a_scene_at_rest_shows_its_residual_and_how_it_came_down() {
     let said = place.done(&[&["check", "block.ron"], &set[..2]].concat());
     assert!(said.contains("rest under what acts at 200 ms") && said.contains("convergence.csv"), "{said}");
     let said = place.done(&[&["explain", "block.ron", "--backend", "gpu"], &set[..2]].concat());
-    assert!(said.contains("fictitious_mass") && said.contains("shaders/relaxation.wgsl"), "{said}");
+    assert!(said.contains("inertial_mass") && said.contains("shaders/relaxation.wgsl"), "{said}");
 }
 
 #[test]

@@ -64,9 +64,6 @@ pub const STIFFEST: Implicitly =
 pub const TOO_FAST: Implicitly =
     Implicitly::NotMeant("it is about how far a needle goes in a stable step; implicit ones refuse half an edge");
 
-/// What has not been run to its end.
-pub const LONG: Implicitly = Implicitly::NotMeant("not known: it has not been run to its end by implicit steps yet");
-
 /// What sucks.
 pub const SUCTION: Implicitly = Implicitly::NotMeant("suction takes no part in implicit steps");
 

@@ -116,10 +116,10 @@ pub const SHORTFALLS: &[Shortfall] = &[
         why: "an elastic block that slides under constant friction rings (Adams 1995), and what hops is held less: at .5 it goes 2 % farther than a rigid one and its lean, where 1 % is allowed",
     },
     Shortfall {
-        case: "h41",
-        on: |c, _| c.implicit && c.is_tets(),
-        verdict: CaseVerdict::FailedHonestly,
-        why: "while it slides, a step of 1 ms is not found: Newton's directions lead no way down at a residual of 4e-8 to 3e-7 N; with the preconditioner that knew no springs it passed, and why has not been found out",
+        case: "h70",
+        on: |c, _| c.implicit,
+        verdict: CaseVerdict::Failed,
+        why: "the trapezoidal rule makes energy of springs that begin and cease to touch within a step (Laursen & Chawla 1997): four to seven times of it are there after 20 000 steps; and what is found at rest rings in its springs, undamped",
     },
     Shortfall {
         case: "h45",

@@ -1,15 +1,15 @@
 //! What a kernel needs next, asked of memory before it is needed: of columns that are read in pieces of some kilobytes
 //! the core finds out too late what comes next.
 
-use super::{FROM_PLACES, GRADIENTS, PatchForces};
+use super::PatchForces;
 use crate::elements::Element;
 use crate::materials::Elastic;
 use crate::math::{LANES, SimdScalar};
 use prefetch_index::prefetch_index;
 
 /// Bytes of rest shapes up to which a block is taken to lie in some cache, where asking beforehand costs a hundredth
-/// and gains nothing, and where rest shapes are read and not found from places.
-pub const IN_CACHE: usize = 8 << 20;
+/// and gains nothing.
+pub(super) const IN_CACHE: usize = 8 << 20;
 
 /// How many groups of elements beforehand: 2 to 8 are alike (docs/performance.md).
 pub(super) const AHEAD: usize = 3;
@@ -21,11 +21,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
     /// Asks for what a group of elements reads one after the other. It may be one of the next patch's, or none.
     #[inline(always)]
     pub(super) fn fetch(&self, group: usize) {
-        if const { EFFECTS & FROM_PLACES != 0 } {
-            ask(self.rest_shape, group * E::ROWS + GRADIENTS, E::ROWS - GRADIENTS);
-        } else {
-            ask(self.rest_shape, group * E::ROWS, E::ROWS);
-        }
+        ask(self.rest_shape, group * E::ROWS, E::ROWS);
         match &self.patch_local {
             Some(patch_local) => ask(patch_local.corners, group * E::NODES, E::NODES),
             None => ask(self.connectivity, group * E::NODES, E::NODES),

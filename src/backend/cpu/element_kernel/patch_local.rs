@@ -1,10 +1,10 @@
 //! What is patch-local: its nodes' displacements, and the sums of its forces.
 
-use super::{FROM_PLACES, GRADIENTS, NodeColumns, PatchForces};
+use super::{NodeColumns, PatchForces};
 use crate::components::Patches;
 use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::materials::Elastic;
-use crate::math::{LANES, Real, Scratch, SimdScalar, dot, minor};
+use crate::math::{LANES, Real, Scratch, SimdScalar};
 use pulp::Simd;
 
 // corners are written out below: an element that has more needs more there
@@ -25,7 +25,6 @@ pub(super) fn parts<'a, T>(
         let patch_local = patches.map(|patches| PatchLocal {
             nodes: &patches.nodes[patches.starts[index] as usize..patches.starts[index + 1] as usize],
             corners: part(&patches.connectivity, index, corners_a_patch).as_chunks().0,
-            places: patches.places_of(index),
         });
         let forces = patch_local.as_ref().map_or(forces_a_patch, |patch_local| 3 * patch_local.nodes.len());
         let all = std::mem::take(&mut force);
@@ -52,8 +51,6 @@ pub(super) struct PatchLocal<'a> {
     pub(super) nodes: &'a [u32],
     /// Which of them each corner is.
     pub(super) corners: &'a [[u16; LANES]],
-    /// Where they are at rest (m), if rest shapes are found from that.
-    places: &'a [[f32; 3]],
 }
 
 impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_, E, T, L, EFFECTS> {
@@ -77,50 +74,6 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
             *row = [u[0], u[1], u[2], theta(node)];
         }
         scratch.sums[..patch_local.nodes.len()].fill([T::default(); 4]);
-        if const { EFFECTS & FROM_PLACES != 0 } {
-            for (row, place) in scratch.places.iter_mut().zip(patch_local.places) {
-                let [x, y, z] = place.map(|number| T::from_f64(f64::from(number)));
-                *row = [x, y, z, T::default()];
-            }
-        }
-    }
-
-    /// Rows 0 to 8 of rest shapes, where they are found from places at rest.
-    #[inline(always)]
-    pub(super) fn gradients_from_places<S: Simd>(
-        &self,
-        simd: S,
-        group: usize,
-        at: usize,
-        scratch: &Scratch<T>,
-    ) -> Option<[T::Vector<S>; GRADIENTS]> {
-        if const { EFFECTS & FROM_PLACES == 0 } {
-            return None;
-        }
-        let (corners, factor) = E::SPANNED_BY?;
-        let rows = of_group::<E, _>(self.patch_local.as_ref()?.corners, group);
-        macro_rules! place {
-            ($place:literal) => {{
-                let [x, y, z, _] = T::load_rows(simd, &scratch.places, &rows[corners[$place]][at..]);
-                [x, y, z]
-            }};
-        }
-        let (x, a, b, c) = (place!(0), place!(1), place!(2), place!(3));
-        macro_rules! from_x {
-            ($end:ident) => {
-                [$end[0] - x[0], $end[1] - x[1], $end[2] - x[2]]
-            };
-        }
-        let (a, b, c) = (from_x!(a), from_x!(b), from_x!(c));
-        let cofactors = [cross(b, c), cross(c, a), cross(a, b)];
-        let scale = x[0].constant(factor) / dot(a, cofactors[0]);
-        let mut gradients = [scale; GRADIENTS];
-        for (i, cofactors) in cofactors.iter().enumerate() {
-            for (j, &cofactor) in cofactors.iter().enumerate() {
-                gradients[3 * i + j] = cofactor * scale;
-            }
-        }
-        Some(gradients)
     }
 
     /// The patch-local sums of forces: to the nodes inside that move now, all others to where patches are gathered.
@@ -264,10 +217,4 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
             }
         }
     }
-}
-
-/// a × b.
-#[inline(always)]
-fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
-    [minor(a[1], a[2], b[1], b[2]), minor(a[2], a[0], b[2], b[0]), minor(a[0], a[1], b[0], b[1])]
 }

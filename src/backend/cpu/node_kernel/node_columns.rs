@@ -126,9 +126,10 @@ impl<T: Scalar> NodeColumns<'_, T> {
         coefficients.foresee(self.inertia[row].to_f64(), damping, self.axes[row], vector(self.step), force)
     }
 
-    /// Adds to the load on one of these nodes (N); nothing where the body has no loads.
+    /// Adds to the load on one of these nodes (N), which a system may that has `&mut ExternalForce` among its
+    /// [columns](crate::systems::NodeSystem::Columns).
     pub fn add_load(&mut self, row: usize, force: DVec3) {
-        if let Some(external) = self.external.as_deref_mut() {
+        if let Some(external) = loads(&mut self.external) {
             for (load, part) in external[3 * row..3 * row + 3].iter_mut().zip(force.to_array()) {
                 *load = T::from_f64(load.to_f64() + part);
             }
@@ -186,6 +187,12 @@ impl<'a, T> NodeColumns<'a, T> {
         let place = self.places_until(row).min((self.internal_work.len() / 2).checked_sub(1)?);
         Some(&mut self.internal_work[2 * place..2 * place + 2])
     }
+}
+
+/// The loads on some nodes (N), which are there for all that say that they write them.
+pub(crate) fn loads<'n, T>(external: &'n mut Option<&mut [T]>) -> Option<&'n mut [T]> {
+    debug_assert!(external.is_some(), "a system adds loads that has no `&mut ExternalForce` among its columns");
+    external.as_deref_mut()
 }
 
 /// Rows of a body in tasks: see [`NodeColumns::tasks`].

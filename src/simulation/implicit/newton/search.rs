@@ -9,6 +9,8 @@ const MOST_HALVINGS: u32 = 12;
 /// How often it is looked along a way where the work is known to change its sign: two looks halve what is left, and
 /// springs a million times as stiff as the rest are found within 2⁻²⁰ of it.
 const MOST_LOOKS: u32 = 42;
+/// What the norm of the residual must fall to where something touches, whatever its work along the way.
+const FALLS: f64 = 0.5;
 /// What the work of the residual must fall to where it has been seen to change its sign along a way.
 const FOUND: f64 = 0.5;
 
@@ -86,8 +88,9 @@ impl Newton<'_, '_> {
                 let now = self.residual();
                 work = self.sums.dot(&self.space.p, &self.space.g);
                 let descends = self.descends(&way, (share, work), touches.then_some(&bracket));
-                // of what is moved as told the work may be of either sign: it leads there where less is left
-                let arrives = touches && moves && now <= DESCENT * *size;
+                // of what is moved as told the work may be of either sign, and what slides is rubbed by what presses it,
+                // of which a symmetric tangent does not know: it leads there where less is left
+                let arrives = touches && now <= if moves { DESCENT } else { FALLS } * *size;
                 if now.is_finite() && (descends || arrives || self.settings.newton == 1 || now <= enough) {
                     self.space.to_go.iter_mut().for_each(|left| *left *= 1.0 - share);
                     *size = now;

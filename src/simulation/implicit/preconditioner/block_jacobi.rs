@@ -1,9 +1,8 @@
 //! The 3×3 block of each node, of all elements at rest.
 
-use super::columns::{each_column, elements_left};
+use super::columns::{Columns, each_column, elements_left};
 use super::{Operator, Preconditioner};
-use crate::components::*;
-use bevy_ecs::prelude::*;
+use crate::backend::cpu::Cpu;
 use glam::{DMat3, DVec3};
 use std::collections::BTreeMap;
 
@@ -30,17 +29,24 @@ pub(super) enum Changed {
     Nothing,
     /// D or the share of K.
     Shares,
-    /// Which elements there are, or which axes are free.
+    /// Which axes are free.
+    Axes,
+    /// Which elements there are.
     Bodies,
 }
 
 impl Preconditioner for BlockJacobi {
-    fn apply(&mut self, residual: &[f64], z: &mut [f64]) {
+    fn apply(&mut self, _: &Cpu, residual: &[f64], z: &mut [f64]) {
         apply_blocks(&self.inverses, residual, z);
     }
 
     fn follow(&mut self, operator: &Operator<'_>) {
-        self.update(operator);
+        let changed = self.compare(operator);
+        if changed == Changed::Bodies {
+            self.begin(operator);
+            each_column(operator, |columns| self.add(columns));
+        }
+        self.take(operator, changed);
     }
 
     fn block(&self, node: usize) -> DMat3 {
@@ -62,21 +68,37 @@ pub(super) fn apply_blocks(blocks: &[DMat3], residual: &[f64], z: &mut [f64]) {
 }
 
 impl BlockJacobi {
-    /// Follows an operator, and says what of it has changed.
-    pub fn update(&mut self, operator: &Operator<'_>) -> Changed {
-        let elements = elements_left(operator);
-        let mut changed = match self.share == operator.stiffness && self.inertia == operator.inertia {
-            true => Changed::Nothing,
-            false => Changed::Shares,
-        };
-        if (self.stiffness.len() * 3, self.elements) != (operator.free.len(), elements) {
-            self.elements = elements;
-            self.stiffness = operator.bodies.iter().flat_map(|&body| blocks_of(operator.world, body)).collect();
-            changed = Changed::Bodies;
+    /// What of an operator is another than it was.
+    pub fn compare(&mut self, operator: &Operator<'_>) -> Changed {
+        let before = (self.stiffness.len() * 3, self.elements);
+        self.elements = elements_left(operator);
+        if before != (operator.free.len(), self.elements) {
+            Changed::Bodies
+        } else if self.free != operator.free {
+            Changed::Axes
+        } else if self.share != operator.stiffness || self.inertia != operator.inertia {
+            Changed::Shares
+        } else {
+            Changed::Nothing
         }
-        if self.free != operator.free {
-            changed = Changed::Bodies;
+    }
+
+    /// Begins with no stiffness, which comes by columns.
+    pub fn begin(&mut self, operator: &Operator<'_>) {
+        self.stiffness.clear();
+        self.stiffness.resize(operator.free.len() / 3, DMat3::ZERO);
+    }
+
+    /// Adds what a column of all elements of a block is to the displaced node itself.
+    pub fn add(&mut self, columns: &Columns<'_>) {
+        for row in columns.rows() {
+            let node = columns.node(row, columns.corner);
+            *self.stiffness[node].col_mut(columns.axis) += columns.force(row, columns.corner);
         }
+    }
+
+    /// Follows an operator of which this has changed, and the springs that touch.
+    pub fn take(&mut self, operator: &Operator<'_>, changed: Changed) {
         if changed != Changed::Nothing {
             self.share = operator.stiffness;
             self.inertia.clear();
@@ -90,7 +112,6 @@ impl BlockJacobi {
         for node in before.keys().chain(self.springs.keys()).copied().collect::<Vec<usize>>() {
             self.inverses[node] = self.inverse_of(node, DMat3::IDENTITY);
         }
-        changed
     }
 
     /// Whether springs act on any node.
@@ -156,15 +177,5 @@ fn blocks_of_springs(operator: &Operator<'_>) -> BTreeMap<usize, DMat3> {
             *blocks.entry(first / 3).or_insert(DMat3::ZERO) += spring.slope * (weight * weight);
         }
     }
-    blocks
-}
-
-/// Of each node of a body the diagonal block of its stiffness at rest.
-fn blocks_of(world: &World, body: Entity) -> Vec<DMat3> {
-    let nodes = world.get::<Mass>(body).map_or(0, |mass| mass.len());
-    let mut blocks = vec![DMat3::ZERO; nodes];
-    each_column(world, body, |column| {
-        *blocks[column.nodes[column.corner]].col_mut(column.axis) += column.forces[column.corner];
-    });
     blocks
 }

@@ -6,48 +6,77 @@ use super::super::super::tangent::{at_an_instant, heights_at_nodes};
 use super::Operator;
 use crate::backend::cpu::Cpu;
 use crate::components::*;
-use crate::elements::{MOST_NODES, node_count};
+use crate::elements::node_count;
 use crate::math::lane_place;
 use crate::mesh::lowest;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
-/// How far a corner is displaced to either side to see what it meets, as a share of the height of the flattest element
-/// there: curvature and rounding are then some 1e-10 of the slope.
-const CHANGE: f64 = 1e-5;
+/// How far a corner is displaced to see what it meets, as a share of the height of the flattest element there:
+/// curvature of the law and rounding are then some 1e-6 of the slope.
+const CHANGE: f64 = 1e-7;
 
-/// A column of an element's stiffness.
-pub(super) struct Column<'a> {
+/// A column of the stiffness of each element of a block.
+pub(super) struct Columns<'a> {
     /// The corner that is displaced, and along which axis.
     pub corner: usize,
     pub axis: usize,
-    /// The nodes of all corners, in the rows of their body.
-    pub nodes: &'a [usize],
-    /// What the displacement of a metre would make of force at each (N/m).
-    pub forces: &'a [DVec3],
+    /// How many corners an element has.
+    pub corners: usize,
+    /// Where the nodes of the body begin among those of all.
+    first: usize,
+    connectivity: &'a [u32],
+    /// Forces (N) as displaced and at rest, and for each element 1 over how far (1/m); 0 of those that are removed.
+    forces: [&'a [f64]; 2],
+    per_change: &'a [f64],
 }
 
-/// Gives all columns of all elements of a body, which have not been removed.
-pub(super) fn each_column(world: &World, body: Entity, mut take: impl FnMut(Column<'_>)) {
-    let heights = heights_at_nodes(world, body).unwrap_or_default();
-    for &entity in world.get::<Authoring>(body).into_iter().flat_map(|authoring| &authoring.blocks) {
-        let (Some(apart), Some(connectivity)) =
-            (BlockForces::of(world, entity, at_an_instant), world.get::<Connectivity>(entity))
-        else {
-            continue;
-        };
-        let alive = world.get::<Alive>(entity);
-        let is_left = |row: usize| alive.is_none_or(|alive| alive[row] != 0);
-        columns_of(world.resource::<Cpu>(), apart.apart(), (connectivity, &heights), is_left, &mut take);
+impl Columns<'_> {
+    /// The elements that are left.
+    pub fn rows(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.per_change.len()).filter(|&row| self.per_change[row] > 0.0)
+    }
+
+    /// The node of a corner, among those of all bodies.
+    pub fn node(&self, row: usize, corner: usize) -> usize {
+        self.first + self.connectivity[lane_place(row, self.corners, corner)] as usize
+    }
+
+    /// What the displacement of a metre would make of force at a corner (N/m).
+    pub fn force(&self, row: usize, corner: usize) -> DVec3 {
+        let [displaced, at_rest] = self.forces;
+        let number = |i: usize| lane_place(row, 3 * self.corners, 3 * corner + i);
+        let change = |i: usize| displaced[number(i)] - at_rest[number(i)];
+        DVec3::new(change(0), change(1), change(2)) * self.per_change[row]
+    }
+}
+
+/// Gives all columns of all elements of all bodies: of each corner of a block one axis after the other.
+pub(super) fn each_column(operator: &Operator<'_>, mut take: impl FnMut(&Columns<'_>)) {
+    let (world, mut first) = (operator.world, 0);
+    for &body in operator.bodies {
+        let heights = heights_at_nodes(world, body).unwrap_or_default();
+        for &entity in world.get::<Authoring>(body).into_iter().flat_map(|authoring| &authoring.blocks) {
+            let (Some(apart), Some(connectivity)) =
+                (BlockForces::of(world, entity, at_an_instant), world.get::<Connectivity>(entity))
+            else {
+                continue;
+            };
+            let alive = world.get::<Alive>(entity);
+            let is_left = |row: usize| alive.is_none_or(|alive| alive[row] != 0);
+            let of_block = (first, &connectivity[..], &heights[..]);
+            columns_of(world.resource::<Cpu>(), apart.apart(), of_block, is_left, &mut take);
+        }
+        first += world.get::<Mass>(body).map_or(0, |mass| mass.len());
     }
 }
 
 fn columns_of(
     cpu: &Cpu,
     mut block: BlockForces<'_>,
-    (connectivity, heights): (&[u32], &[f64]),
+    (first, connectivity, heights): (usize, &[u32], &[f64]),
     is_left: impl Fn(usize) -> bool,
-    take: &mut impl FnMut(Column<'_>),
+    take: &mut impl FnMut(&Columns<'_>),
 ) {
     let (corners, count) = (node_count(block.block.kind), block.block.count);
     let node = |row: usize, corner: usize| connectivity[lane_place(row, corners, corner)] as usize;
@@ -56,25 +85,17 @@ fn columns_of(
         if is_left(row) && height.is_finite() { CHANGE * height } else { 0.0 }
     };
     let changes: Vec<f64> = (0..count).map(change).collect();
+    let per_change: Vec<f64> = changes.iter().map(|&by| if by > 0.0 { 1.0 / by } else { 0.0 }).collect();
     let mut u = vec![0.0; 3 * connectivity.len()];
-    let [mut ahead, mut behind] = [vec![0.0; u.len()], vec![0.0; u.len()]];
+    let [mut displaced, mut at_rest] = [vec![0.0; u.len()], vec![0.0; u.len()]];
+    block.forces(cpu, &u, &mut at_rest);
     for (corner, axis) in (0..corners).flat_map(|corner| (0..3).map(move |axis| (corner, axis))) {
         let place = |row: usize| 3 * (row * corners + corner) + axis;
         (0..count).for_each(|row| u[place(row)] = changes[row]);
-        block.forces(cpu, &u, &mut ahead);
-        (0..count).for_each(|row| u[place(row)] = -changes[row]);
-        block.forces(cpu, &u, &mut behind);
+        block.forces(cpu, &u, &mut displaced);
         (0..count).for_each(|row| u[place(row)] = 0.0);
-        for row in (0..count).filter(|&row| changes[row] > 0.0) {
-            let (mut nodes, mut forces) = ([0; MOST_NODES], [DVec3::ZERO; MOST_NODES]);
-            for other in 0..corners {
-                let number = |i: usize| lane_place(row, 3 * corners, 3 * other + i);
-                let difference = [0, 1, 2].map(|i| ahead[number(i)] - behind[number(i)]);
-                nodes[other] = node(row, other);
-                forces[other] = DVec3::from_array(difference) / (2.0 * changes[row]);
-            }
-            take(Column { corner, axis, nodes: &nodes[..corners], forces: &forces[..corners] });
-        }
+        let forces = [&displaced[..], &at_rest[..]];
+        take(&Columns { corner, axis, corners, first, connectivity, forces, per_change: &per_change });
     }
 }
 

@@ -2,6 +2,7 @@
 //! Both are of bodies at rest, and turned as the aggregates have turned since.
 
 mod aggregates;
+mod assembly;
 mod cholesky;
 mod coarse;
 mod rotation;
@@ -9,25 +10,33 @@ mod touched;
 
 use super::block_jacobi::{BlockJacobi, Changed, apply_blocks};
 use super::columns::{each_column, pieces};
-use super::{Operator, Preconditioner};
+use super::{Operator, Preconditioner, SpringSlope};
+use crate::backend::cpu::Cpu;
 use crate::components::*;
-use crate::elements::MOST_NODES;
 pub(in super::super) use aggregates::RIGID;
+use assembly::Assembly;
 use bevy_ecs::prelude::*;
 pub(in super::super) use coarse::Coarse;
 use glam::{DMat3, DVec3};
+use std::collections::BTreeSet;
+use touched::{MOST_TOUCHED, Touched};
 
 /// B r = Q (D⁻¹ + P A⁻¹ Pᵀ) Qᵀ r, D the diagonal blocks, P the rigid motions of aggregates of some 30 nodes, A = Pᵀ
 /// (D + c K) P their dense matrix, a piece of a body each, Q the rotations of the aggregates. Springs that touch are in
-/// D, and in A those that act on one piece alone.
+/// D and in A, which they couple pieces in; of more aggregates than they may act on there, in D alone.
 ///
 /// Of a piece that nothing holds along an axis, what it does as a whole is solved apart from that: B t = t tᵀ r / tᵀ D
 /// t along its translation t, and the rest of B without a mean motion. So it keeps its linear momentum however early a
-/// solve ends, as [`Mass`](super::Mass) does.
+/// solve ends, as [`Mass`](super::Mass) does. Where a spring holds it to something that is no piece it does not.
 #[derive(Default)]
 pub(in crate::simulation) struct TwoLevel {
     fine: BlockJacobi,
     pieces: Vec<Piece>,
+    /// Of each node its piece, and where it stands among the nodes there that move.
+    places: Vec<Option<[u32; 2]>>,
+    touched: Touched,
+    /// The motions of all aggregates.
+    motions: Vec<f64>,
     /// The inverses of the blocks, turned.
     inverses: Vec<DMat3>,
     turned: bool,
@@ -41,33 +50,48 @@ struct Piece {
     /// All its nodes, among those of all bodies, and where they are at rest (m).
     nodes: Vec<(usize, DVec3)>,
     coarse: Coarse,
+    /// Where its unknowns begin among those of all.
+    first: usize,
+    /// Whether a spring holds it to something that is no piece.
+    is_held: bool,
 }
 
 impl Preconditioner for TwoLevel {
-    fn apply(&mut self, residual: &[f64], z: &mut [f64]) {
+    fn apply(&mut self, cpu: &Cpu, residual: &[f64], z: &mut [f64]) {
         self.residual.copy_from_slice(residual);
         let inertia = &self.fine.inertia;
         let wholes: Vec<DVec3> = self.pieces.iter().map(|piece| piece.whole(inertia, &mut self.residual)).collect();
         apply_blocks(&self.inverses, &self.residual, z);
-        for (piece, whole) in self.pieces.iter_mut().zip(wholes) {
-            piece.coarse.correct(&self.fine.free, &self.residual, z);
+        for piece in &mut self.pieces {
+            let own = piece.first..piece.first + piece.coarse.size();
+            piece.coarse.solve(cpu, &self.residual, &mut self.motions[own]);
+        }
+        self.touched.correct(&mut self.motions);
+        for (piece, whole) in self.pieces.iter().zip(wholes) {
+            piece.coarse.carry(&self.motions[piece.first..], &self.fine.free, z);
             piece.move_as_a_whole(inertia, whole, z);
         }
     }
 
     fn follow(&mut self, operator: &Operator<'_>) {
         let touches = self.fine.is_touched() || !operator.springs.is_empty();
-        let changed = self.fine.update(operator);
-        if changed == Changed::Bodies {
-            self.pieces = find_pieces(operator);
+        let changed = self.fine.compare(operator);
+        if matches!(changed, Changed::Axes | Changed::Bodies) {
+            self.fine.begin(operator);
+            self.pieces = find_pieces(operator, &mut self.fine);
+            self.places = places_of(&self.pieces, operator.free.len() / 3);
+            let size = self.pieces.last().map_or(0, |piece| piece.first + piece.coarse.size());
+            self.motions.resize(size, 0.0);
         }
+        self.fine.take(operator, changed);
         if changed != Changed::Nothing {
             self.made += 1;
             self.pieces.iter_mut().for_each(|piece| piece.coarse.factorize(&piece.nodes, operator));
+            self.touched.forget();
         }
         self.turn(operator, changed != Changed::Nothing || touches);
         if touches {
-            self.pieces.iter_mut().for_each(|piece| piece.coarse.touch(operator));
+            self.touch(operator);
         }
         self.residual.resize(operator.free.len(), 0.0);
     }
@@ -91,11 +115,12 @@ impl Preconditioner for TwoLevel {
     fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
         let (blocks, mut held) = self.fine.holds();
         let turned = size_of_val(&self.inverses[..]) + size_of_val(&self.residual[..]);
+        let places = size_of_val(&self.places[..]) + size_of_val(&self.motions[..]) + self.touched.bytes();
         let of_pieces = self.pieces.iter().map(|piece| piece.coarse.bytes() + size_of_val(&piece.nodes[..]));
         let aggregates: usize = self.pieces.iter().map(|piece| piece.coarse.size() / RIGID).sum();
         let matrices: usize = self.pieces.iter().map(|piece| piece.coarse.bytes_of_matrix()).sum();
         held.push(("blocks that have turned", turned as u64));
-        held.push(("aggregates", of_pieces.sum::<usize>() as u64));
+        held.push(("aggregates", (places + of_pieces.sum::<usize>()) as u64));
         held.push(("coarse matrices with their factors", matrices as u64));
         let coarse = format!("{aggregates} aggregates of nodes with {RIGID} rigid motions each");
         (format!("{blocks}, and {coarse}"), held)
@@ -103,6 +128,52 @@ impl Preconditioner for TwoLevel {
 }
 
 impl TwoLevel {
+    /// Takes the springs that touch, with aggregates as they have turned: Pᵀ of them P.
+    fn touch(&mut self, operator: &Operator<'_>) {
+        let place = |first: usize| self.places[first / 3].map(|place| place.map(|number| number as usize));
+        let parts = operator.springs.iter().flat_map(|spring| spring.parts);
+        let on = parts.filter_map(|&(first, _)| {
+            let [piece, own] = place(first)?;
+            let Piece { coarse, first, .. } = &self.pieces[piece];
+            Some(first / RIGID + coarse.aggregates.of_node[own])
+        });
+        let aggregates: Vec<usize> = on.collect::<BTreeSet<usize>>().into_iter().collect();
+        let (aggregates, springs) = match aggregates.len() {
+            0..=MOST_TOUCHED => (aggregates, operator.springs),
+            _ => (Vec::new(), &[][..]),
+        };
+        let count = RIGID * aggregates.len();
+        let mut stiffness = vec![0.0; count * count];
+        let mut held = vec![false; self.pieces.len()];
+        for spring in springs {
+            let is_held = is_outside(spring, |first| place(first).is_none());
+            // of each unknown the point's motion against what it touches
+            let mut ways = vec![(0, DVec3::ZERO); 0];
+            for &(first, weight) in spring.parts {
+                let Some([piece, own]) = place(first) else { continue };
+                held[piece] |= is_held;
+                let Piece { coarse, first: begins, .. } = &self.pieces[piece];
+                for axis in (0..3).filter(|axis| operator.free[first + axis]) {
+                    let (unknown, moved) = coarse.ways(own, axis, weight);
+                    let Ok(at) = aggregates.binary_search(&((begins + unknown) / RIGID)) else { continue };
+                    ways.extend((0..RIGID).map(|i| (RIGID * at + i, DVec3::AXES[axis] * moved[i])));
+                }
+            }
+            for &(i, way) in &ways {
+                let force = spring.slope * way;
+                ways.iter().for_each(|&(j, other)| stiffness[count * i + j] += force.dot(other));
+            }
+        }
+        let pieces = &self.pieces;
+        self.touched.take(&aggregates, stiffness, |aggregate| {
+            let of = pieces.partition_point(|piece| piece.first <= RIGID * aggregate) - 1;
+            let Piece { coarse, first, .. } = &pieces[of];
+            let own = RIGID * aggregate - first;
+            (*first, (own..own + RIGID).map(|unknown| coarse.column(unknown)).collect())
+        });
+        self.pieces.iter_mut().zip(held).for_each(|(piece, held)| piece.is_held = held);
+    }
+
     fn turn(&mut self, operator: &Operator<'_>, again: bool) {
         let places: Vec<f64> = operator.bodies.iter().flat_map(|&body| place_of(operator, body)).collect();
         let displacement = |node: usize| DVec3::from_slice(&places[3 * node..]);
@@ -133,10 +204,21 @@ fn place_of(operator: &Operator<'_>, body: Entity) -> Vec<f64> {
     places
 }
 
+/// Whether a spring acts on something that is at rest, or led.
+fn is_outside(spring: &SpringSlope<'_>, is_led: impl Fn(usize) -> bool) -> bool {
+    let sum: f64 = spring.parts.iter().map(|(_, weight)| weight).sum();
+    sum.abs() > 0.5 || spring.parts.iter().any(|&(first, weight)| weight != 0.0 && is_led(first))
+}
+
 impl Piece {
+    /// Along each axis that nothing holds, 1/ΣD of it (m/N); else 0.
+    fn per_inertia(&self) -> DVec3 {
+        if self.is_held { DVec3::ZERO } else { self.coarse.per_inertia }
+    }
+
     /// Takes out of a residual what moves the piece as a whole, r − D t (tᵀ r/tᵀ D t); gives that motion (m).
     fn whole(&self, inertia: &[f64], residual: &mut [f64]) -> DVec3 {
-        let per_inertia = self.coarse.per_inertia;
+        let per_inertia = self.per_inertia();
         if per_inertia == DVec3::ZERO {
             return DVec3::ZERO;
         }
@@ -151,7 +233,7 @@ impl Piece {
     /// Adds a motion of the whole to x (m) such that tᵀ (b − D x) = 0 along each axis that nothing holds: elements do
     /// not resist it, so that D alone is there of the operator.
     fn settle(&self, inertia: &[f64], right: &[f64], x: &mut [f64]) {
-        let per_inertia = self.coarse.per_inertia;
+        let per_inertia = self.per_inertia();
         if per_inertia == DVec3::ZERO {
             return;
         }
@@ -165,7 +247,7 @@ impl Piece {
 
     /// Puts a motion (m) in the place of the mean one in z.
     fn move_as_a_whole(&self, inertia: &[f64], motion: DVec3, z: &mut [f64]) {
-        let per_inertia = self.coarse.per_inertia;
+        let per_inertia = self.per_inertia();
         if per_inertia == DVec3::ZERO {
             return;
         }
@@ -177,33 +259,37 @@ impl Piece {
     }
 }
 
-/// The pieces of all bodies, with the stiffness of their coarse levels.
-fn find_pieces(operator: &Operator<'_>) -> Vec<Piece> {
-    let (mut all, mut first) = (Vec::new(), 0);
+/// The pieces of all bodies, with the stiffness of their coarse levels; that of nodes comes by beside.
+fn find_pieces(operator: &Operator<'_>, fine: &mut BlockJacobi) -> Vec<Piece> {
+    let (mut all, mut first, mut unknowns) = (Vec::new(), 0, 0);
     for &body in operator.bodies {
         let Some(rest) = operator.world.get::<RestPosition>(body) else { continue };
-        // of each node of the body its piece, and its place among those of it that move
-        let mut places = vec![(usize::MAX, None); rest.0.len()];
         for nodes in pieces(operator.world, body) {
             let nodes: Vec<(usize, DVec3)> = nodes.into_iter().map(|node| (first + node, rest.0[node])).collect();
             let coarse = Coarse::of(&nodes, operator);
-            nodes.iter().for_each(|(node, _)| places[node - first].0 = all.len());
-            coarse.nodes.iter().enumerate().for_each(|(place, node)| places[node - first].1 = Some(place));
-            all.push(Piece { nodes, coarse });
+            let end = unknowns + coarse.size();
+            all.push(Piece { nodes, coarse, first: unknowns, is_held: false });
+            unknowns = end;
         }
-        each_column(operator.world, body, |column| {
-            if !operator.free[3 * (first + column.nodes[column.corner]) + column.axis] {
-                return;
-            }
-            let Some(piece) = all.get_mut(places[column.nodes[0]].0) else { return };
-            let mut of_corners = [None; MOST_NODES];
-            of_corners.iter_mut().zip(column.nodes).for_each(|(place, &node)| *place = places[node].1);
-            let of_corners = &of_corners[..column.nodes.len()];
-            piece.coarse.add(&column, of_corners, operator.free);
-        });
         first += rest.0.len();
     }
+    let mut assembly = Assembly::of(all.iter().map(|piece| &piece.coarse), operator.free);
+    let cpu = operator.world.resource::<Cpu>();
+    each_column(operator, |columns| {
+        fine.add(columns);
+        assembly.add(cpu, columns, all.iter_mut().map(|piece| &mut piece.coarse));
+    });
     all
+}
+
+/// Of each node of all bodies its piece, and where it stands there.
+fn places_of(pieces: &[Piece], nodes: usize) -> Vec<Option<[u32; 2]>> {
+    let mut places = vec![None; nodes];
+    for (number, piece) in pieces.iter().enumerate() {
+        let nodes = piece.coarse.nodes.iter().enumerate();
+        nodes.for_each(|(own, &node)| places[node] = Some([number as u32, own as u32]));
+    }
+    places
 }
 
 #[cfg(test)]

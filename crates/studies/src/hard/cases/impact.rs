@@ -16,12 +16,6 @@ struct Plate {
     stiffness: f64,
 }
 
-/// How much stiffer a plate that lets go is to the step than one that holds. A node comes to be in it by d ≤ v Δt
-/// within a step and has ½ k d² there that nobody gave, at most κ Δt² of ½ m v² and on the average a third of that. The
-/// touching half layer of four is an eighth of the cube: 1 % of the whole energy are gained at κ Δt² = 0.24, at 0.245
-/// of the step at which the spring by itself is stable, of which a `safety` of 0.9 takes (0.9/0.245)² = 13.5.
-const LETS_GO: f64 = 13.5;
-
 impl NodeSystem for Plate {
     type Columns = (&'static RestPosition, &'static Displacement, &'static mut ExternalForce);
     type Prepared = ();
@@ -32,7 +26,7 @@ impl NodeSystem for Plate {
     fn slopes(&self, nodes: &NodesAtRest<'_>) -> ForceSlopes {
         let moving = (0..nodes.rest.0.len()).filter(|&row| nodes.moves(row));
         let lightest = moving.map(|row| nodes.mass.get(row)).fold(f64::INFINITY, f64::min);
-        ForceSlopes { stiffness: LETS_GO * self.stiffness / lightest, damping: 0.0 }
+        ForceSlopes { stiffness: self.stiffness / lightest, damping: 0.0 }.letting_go()
     }
 
     fn energy(&self, nodes: &MiddleOfStep<'_>) -> Option<f64> {

@@ -1,6 +1,7 @@
 //! Groups of neighbouring nodes that move rigidly together: the coarse level's unknowns.
 
 use glam::DVec3;
+use std::ops::Range;
 
 /// Rigid motions of an aggregate.
 pub const RIGID: usize = 6;
@@ -14,6 +15,8 @@ pub struct Aggregates {
     pub arm: Vec<DVec3>,
     /// Aggregates of how many nodes each.
     pub sizes: Vec<usize>,
+    /// Once they are [sorted](Self::sort), where the nodes of each are.
+    pub ranges: Vec<Range<usize>>,
 }
 
 impl Aggregates {
@@ -21,7 +24,7 @@ impl Aggregates {
     /// positions (m).
     pub fn of(positions: &[DVec3], most: usize) -> Self {
         let mut new =
-            Self { of_node: vec![0; positions.len()], arm: vec![DVec3::ZERO; positions.len()], sizes: Vec::new() };
+            Self { of_node: vec![0; positions.len()], arm: vec![DVec3::ZERO; positions.len()], ..Self::default() };
         let mut waiting = vec![(0..positions.len()).collect::<Vec<usize>>()];
         while let Some(mut nodes) = waiting.pop() {
             let (least, greatest) =
@@ -46,6 +49,21 @@ impl Aggregates {
         new
     }
 
+    /// Sorts nodes by their aggregates, else as they were; gives where each was.
+    pub fn sort(&mut self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.of_node.len()).collect();
+        order.sort_by_key(|&node| self.of_node[node]);
+        self.of_node = order.iter().map(|&node| self.of_node[node]).collect();
+        self.arm = order.iter().map(|&node| self.arm[node]).collect();
+        let mut end = 0;
+        let range = |size: &usize| {
+            end += size;
+            end - size..end
+        };
+        self.ranges = self.sizes.iter().map(range).collect();
+        order
+    }
+
     /// How many there are.
     pub fn count(&self) -> usize {
         self.sizes.len()
@@ -53,7 +71,8 @@ impl Aggregates {
 
     /// Their bytes.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.of_node[..]) + size_of_val(&self.arm[..]) + size_of_val(&self.sizes[..])
+        let of_aggregates = size_of_val(&self.sizes[..]) + size_of_val(&self.ranges[..]);
+        size_of_val(&self.of_node[..]) + size_of_val(&self.arm[..]) + of_aggregates
     }
 }
 

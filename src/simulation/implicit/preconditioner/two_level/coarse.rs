@@ -1,13 +1,11 @@
 //! The coarse level of a piece of a body: rigid motions of aggregates of its nodes, and what resists them.
 
-use super::super::columns::Column;
-use super::super::{Operator, SpringSlope};
+use super::super::Operator;
 use super::aggregates::{Aggregates, RIGID, motions};
 use super::cholesky::Cholesky;
 use super::rotation::{angle, rotation};
-use super::touched::Touched;
+use crate::backend::cpu::Cpu;
 use glam::{DMat3, DVec3};
-use std::collections::BTreeSet;
 
 /// Nodes of an aggregate at most, as long as a piece has no more aggregates than that: the matrix is dense.
 const NODES_AN_AGGREGATE: usize = 30;
@@ -17,20 +15,17 @@ const HARDLY_TURNED: f64 = 0.035;
 
 /// The coarse level of a piece.
 pub(in crate::simulation::implicit) struct Coarse {
-    /// Its nodes that move along some axis, among those of all bodies, in their order.
+    /// Its nodes that move along some axis, among those of all bodies, one aggregate after the other.
     pub nodes: Vec<usize>,
     /// Where they are at rest (m).
     rest: Vec<DVec3>,
-    aggregates: Aggregates,
-    /// Pᵀ K P: rows up to the diagonal, one after the other.
-    stiffness: Vec<f64>,
+    pub aggregates: Aggregates,
+    /// Pᵀ K P: columns from the diagonal down, one after the other.
+    pub stiffness: Vec<f64>,
     factor: Cholesky,
-    /// What springs add to the matrix of the factor.
-    touched: Touched,
     /// How each aggregate has turned, and the arms of nodes as they are then.
     rotations: Vec<DMat3>,
     arms: Vec<DVec3>,
-    coarse: Vec<f64>,
     /// Along each axis that nothing holds, 1/ΣD of the piece (m/N); else 0.
     pub per_inertia: DVec3,
 }
@@ -40,21 +35,28 @@ fn place(row: usize, column: usize) -> usize {
     row * (row + 1) / 2 + column
 }
 
+/// Where a column of so many unknowns begins, of columns from the diagonal down.
+pub(super) fn start(column: usize, size: usize) -> usize {
+    column * size - column * column.saturating_sub(1) / 2
+}
+
 impl Coarse {
     /// Of the nodes of a piece, with their rest positions (m); without its stiffness.
     pub fn of(piece: &[(usize, DVec3)], operator: &Operator<'_>) -> Self {
         let moves = |node: usize| operator.free[3 * node..3 * node + 3].contains(&true);
-        let (nodes, rest): (Vec<usize>, Vec<DVec3>) = piece.iter().filter(|(node, _)| moves(*node)).copied().unzip();
+        let (mut nodes, mut rest): (Vec<usize>, Vec<DVec3>) =
+            piece.iter().filter(|(node, _)| moves(*node)).copied().unzip();
         let most = NODES_AN_AGGREGATE.max(nodes.len().div_ceil(MOST_AGGREGATES));
-        let aggregates = Aggregates::of(&rest, most);
+        let mut aggregates = Aggregates::of(&rest, most);
+        let order = aggregates.sort();
+        nodes = order.iter().map(|&own| nodes[own]).collect();
+        rest = order.iter().map(|&own| rest[own]).collect();
         let size = RIGID * aggregates.count();
         let mut new = Self {
             stiffness: vec![0.0; size * (size + 1) / 2],
-            factor: Cholesky::of(Vec::new(), 0),
-            touched: Touched::default(),
+            factor: Cholesky::default(),
             rotations: vec![DMat3::IDENTITY; aggregates.count()],
             arms: aggregates.arm.clone(),
-            coarse: vec![0.0; size],
             per_inertia: DVec3::ZERO,
             nodes,
             rest,
@@ -73,34 +75,12 @@ impl Coarse {
         }
     }
 
-    /// Adds what a column of an element's stiffness is to the rigid motions of its corners, whose places among the
-    /// nodes are told.
-    pub(super) fn add(&mut self, column: &Column<'_>, places: &[Option<usize>], free: &[bool]) {
-        let Some(own) = places[column.corner] else { return };
-        let motion = motions(self.aggregates.arm[own], column.axis);
-        let across = RIGID * self.aggregates.of_node[own];
-        for (&other, force) in places.iter().zip(column.forces) {
-            let Some(other) = other else { continue };
-            let axis = |i: usize| if free[3 * self.nodes[other] + i] { force[i] } else { 0.0 };
-            let force = DVec3::new(axis(0), axis(1), axis(2));
-            let turn = self.aggregates.arm[other].cross(force);
-            let forces = [force.x, force.y, force.z, turn.x, turn.y, turn.z];
-            let down = RIGID * self.aggregates.of_node[other];
-            for (i, force) in forces.iter().enumerate() {
-                for (j, motion) in motion.iter().enumerate() {
-                    let (row, of_column) = ((down + i).max(across + j), (down + i).min(across + j));
-                    // both halves of the matrix come by
-                    let share = if row == of_column { 1.0 } else { 0.5 };
-                    self.stiffness[place(row, of_column)] += share * force * motion;
-                }
-            }
-        }
-    }
-
     /// Makes the factor of Pᵀ (D + c K) P.
     pub fn factorize(&mut self, piece: &[(usize, DVec3)], operator: &Operator<'_>) {
         self.find_inertia(piece, operator);
-        let mut matrix: Vec<f64> = self.stiffness.iter().map(|entry| entry * operator.stiffness).collect();
+        let size = self.size();
+        let entries = (0..size).flat_map(|row| (0..=row).map(move |column| start(column, size) + row - column));
+        let mut matrix: Vec<f64> = entries.map(|entry| self.stiffness[entry] * operator.stiffness).collect();
         for (own, &node) in self.nodes.iter().enumerate() {
             let first = RIGID * self.aggregates.of_node[own];
             for axis in (0..3).filter(|axis| operator.free[3 * node + axis]) {
@@ -111,43 +91,21 @@ impl Coarse {
                 }
             }
         }
-        self.factor = Cholesky::of(matrix, self.coarse.len());
-        self.touched.forget();
+        self.factor = Cholesky::of(operator.world.resource::<Cpu>(), matrix, size);
     }
 
-    /// Takes the springs that act on nodes of this piece alone, with aggregates as they have turned: Pᵀ of them P.
-    pub fn touch(&mut self, operator: &Operator<'_>) {
-        let own = |first: usize| self.nodes.binary_search(&(first / 3)).ok();
-        let is_own = |spring: &&SpringSlope<'_>| spring.parts.iter().all(|&(first, _)| own(first).is_some());
-        let springs: Vec<&SpringSlope<'_>> = operator.springs.iter().filter(is_own).collect();
-        let parts = springs.iter().flat_map(|spring| spring.parts);
-        let aggregates: BTreeSet<usize> =
-            parts.filter_map(|&(first, _)| Some(self.aggregates.of_node[own(first)?])).collect();
-        let aggregates: Vec<usize> = aggregates.into_iter().collect();
-        let count = RIGID * aggregates.len();
-        let mut stiffness = vec![0.0; count * count];
-        for spring in springs {
-            // of each unknown the point's motion against what it touches
-            let mut ways = vec![(0, DVec3::ZERO); 0];
-            for &(first, weight) in spring.parts {
-                let Some(own) = own(first) else { continue };
-                let aggregate = self.aggregates.of_node[own];
-                let Ok(place) = aggregates.binary_search(&aggregate) else { continue };
-                for axis in (0..3).filter(|axis| operator.free[first + axis]) {
-                    // along this axis of space, of motions in the frame of the aggregate
-                    let back = self.rotations[aggregate].transpose().col(axis) * weight;
-                    let turn = self.aggregates.arm[own].cross(back);
-                    for (i, way) in back.to_array().into_iter().chain(turn.to_array()).enumerate() {
-                        ways.push((RIGID * place + i, DVec3::AXES[axis] * way));
-                    }
-                }
-            }
-            for &(i, way) in &ways {
-                let force = spring.slope * way;
-                ways.iter().for_each(|&(j, other)| stiffness[count * i + j] += force.dot(other));
-            }
-        }
-        self.touched.take(&aggregates, stiffness, &self.factor, self.coarse.len());
+    /// How far a part of a node's motion along an axis goes with each motion of its aggregate, as that has turned: its
+    /// first unknown among those of the piece, and the ways.
+    pub fn ways(&self, own: usize, axis: usize, part: f64) -> (usize, [f64; RIGID]) {
+        let aggregate = self.aggregates.of_node[own];
+        let back = self.rotations[aggregate].transpose().col(axis) * part;
+        let turn = self.aggregates.arm[own].cross(back);
+        (RIGID * aggregate, [back.x, back.y, back.z, turn.x, turn.y, turn.z])
+    }
+
+    /// A column of the inverse of the matrix (m/N).
+    pub fn column(&self, unknown: usize) -> Vec<f64> {
+        self.factor.column(unknown)
     }
 
     /// Turns aggregates as their nodes have turned, at displacements (m). Whether any has.
@@ -189,12 +147,12 @@ impl Coarse {
 
     /// The inverse of the matrix, row by row (m/N).
     pub fn inverse(&self) -> Vec<f64> {
-        self.factor.inverse()
+        (0..self.size()).flat_map(|unknown| self.factor.column(unknown)).collect()
     }
 
     /// How many unknowns it has.
     pub fn size(&self) -> usize {
-        self.coarse.len()
+        RIGID * self.aggregates.count()
     }
 
     /// Bytes of the matrix and its factor.
@@ -205,8 +163,7 @@ impl Coarse {
     /// Bytes of what belongs to its nodes and aggregates.
     pub fn bytes(&self) -> usize {
         let of_nodes = size_of_val(&self.nodes[..]) + size_of_val(&self.rest[..]) + size_of_val(&self.arms[..]);
-        let turned = size_of_val(&self.rotations[..]) + size_of_val(&self.coarse[..]);
-        of_nodes + turned + self.aggregates.bytes() + self.touched.bytes()
+        of_nodes + size_of_val(&self.rotations[..]) + self.aggregates.bytes()
     }
 
     /// The nodes with how they have turned.
@@ -214,33 +171,35 @@ impl Coarse {
         self.nodes.iter().zip(&self.aggregates.of_node).map(|(&node, &aggregate)| (node, self.rotations[aggregate]))
     }
 
-    /// Adds P A⁻¹ Pᵀ r to z, on free axes.
-    pub fn correct(&mut self, free: &[bool], residual: &[f64], z: &mut [f64]) {
-        self.coarse.fill(0.0);
-        for ((&node, &aggregate), arm) in self.nodes.iter().zip(&self.aggregates.of_node).zip(&self.arms) {
-            let r = DVec3::from_slice(&residual[3 * node..]);
-            let turn = arm.cross(r);
-            let sums = &mut self.coarse[RIGID * aggregate..][..RIGID];
-            (0..3).for_each(|i| (sums[i], sums[3 + i]) = (sums[i] + r[i], sums[3 + i] + turn[i]));
+    /// A⁻¹ Pᵀ r, of a residual r (N).
+    pub fn solve(&mut self, cpu: &Cpu, residual: &[f64], motions: &mut [f64]) {
+        let of_aggregates = self.rotations.iter().zip(&self.aggregates.ranges);
+        for (sums, (rotation, range)) in motions.chunks_exact_mut(RIGID).zip(of_aggregates) {
+            let (mut force, mut turn) = (DVec3::ZERO, DVec3::ZERO);
+            for (&node, arm) in self.nodes[range.clone()].iter().zip(&self.arms[range.clone()]) {
+                let r = DVec3::from_slice(&residual[3 * node..]);
+                force += r;
+                turn += arm.cross(r);
+            }
+            sums[..3].copy_from_slice(&(rotation.transpose() * force).to_array());
+            sums[3..].copy_from_slice(&(rotation.transpose() * turn).to_array());
         }
-        turn_all(&mut self.coarse, &self.rotations, DMat3::transpose);
-        self.factor.solve(&mut self.coarse);
-        self.touched.correct(&mut self.coarse);
-        turn_all(&mut self.coarse, &self.rotations, |rotation| *rotation);
-        for ((&node, &aggregate), &arm) in self.nodes.iter().zip(&self.aggregates.of_node).zip(&self.arms) {
-            let motion = &self.coarse[RIGID * aggregate..][..RIGID];
-            let moved = DVec3::from_slice(motion) + DVec3::from_slice(&motion[3..]).cross(arm);
-            for i in (0..3).filter(|i| free[3 * node + i]) {
-                z[3 * node + i] += moved[i];
+        self.factor.solve(cpu, motions);
+    }
+
+    /// Moves nodes on free axes of z with the motions of their aggregates.
+    pub fn carry(&self, motions: &[f64], free: &[bool], z: &mut [f64]) {
+        let of_aggregates = self.rotations.iter().zip(&self.aggregates.ranges);
+        for (motion, (rotation, range)) in motions.chunks_exact(RIGID).zip(of_aggregates) {
+            let (moved, turned) = (*rotation * DVec3::from_slice(motion), *rotation * DVec3::from_slice(&motion[3..]));
+            for (&node, &arm) in self.nodes[range.clone()].iter().zip(&self.arms[range.clone()]) {
+                let step = (moved + turned.cross(arm)).to_array();
+                let (z, free) = (&mut z[3 * node..3 * node + 3], &free[3 * node..3 * node + 3]);
+                for i in 0..3 {
+                    z[i] += if free[i] { step[i] } else { 0.0 };
+                }
             }
         }
-    }
-}
-
-/// Turns translations and rotations of aggregates into other frames.
-fn turn_all(motions: &mut [f64], rotations: &[DMat3], which: impl Fn(&DMat3) -> DMat3) {
-    for (motion, rotation) in motions.chunks_exact_mut(3).zip(rotations.iter().flat_map(|rotation| [rotation; 2])) {
-        motion.copy_from_slice(&(which(rotation) * DVec3::from_slice(motion)).to_array());
     }
 }
 
@@ -257,7 +216,7 @@ impl Coarse {
                 }
             }
         };
-        let size = self.coarse.len();
+        let size = self.size();
         let mut largest = 0.0_f64;
         for column in 0..size {
             let (mut motion, mut image) = (vec![0.0; operator.free.len()], vec![0.0; operator.free.len()]);
@@ -267,8 +226,9 @@ impl Coarse {
                 let mut other = vec![0.0; motion.len()];
                 along(row, &mut other);
                 let expected: f64 = image.iter().zip(&other).map(|(f, u)| f * u).sum();
-                let found = self.stiffness[place(row, column)];
-                let [a, b] = [row, column].map(|i| self.stiffness[place(i, i)]);
+                let entry = |row: usize, column: usize| self.stiffness[start(column, size) + row - column];
+                let found = entry(row, column);
+                let [a, b] = [row, column].map(|i| entry(i, i));
                 // differences of forces of one side have the curvature of the law in them
                 assert!((found - expected).abs() < 1e-5 * (a * b).sqrt(), "{row}, {column}: {found}, not {expected}");
                 largest = largest.max(found);

@@ -1,7 +1,6 @@
 #![allow(clippy::unwrap_used)]
 use super::super::SpringSlope;
 use super::*;
-use crate::backend::cpu::Cpu;
 use crate::simulation::implicit::axes::{Axes, Motion};
 use crate::simulation::implicit::sums::Sums;
 use crate::simulation::tangent::Tangent;
@@ -86,15 +85,15 @@ fn it_is_symmetric_and_positive_at_rest_and_turned_where_nodes_slide_and_where_t
         assert_eq!(two_level.turned, angle > 0.0);
         let (p, q) = (made.vector(0.37), made.vector(0.91));
         let [mut of_p, mut of_q] = [vec![0.0; p.len()], vec![0.0; p.len()]];
-        two_level.apply(&p, &mut of_p);
-        two_level.apply(&q, &mut of_q);
+        two_level.apply(sums.cpu(), &p, &mut of_p);
+        two_level.apply(sums.cpu(), &q, &mut of_q);
         let (one, other) = (sums.dot(&q, &of_p), sums.dot(&p, &of_q));
         let size = (sums.dot(&p, &of_p) * sums.dot(&q, &of_q)).sqrt();
         assert!((one - other).abs() < 1e-12 * size, "{angle}: {one} and {other} of {size}");
         for seed in [0.37, 0.91, 1.7, 0.01] {
             let r = made.vector(seed);
             let mut z = vec![0.0; r.len()];
-            two_level.apply(&r, &mut z);
+            two_level.apply(sums.cpu(), &r, &mut z);
             assert!(sums.dot(&r, &z) > 0.0, "{angle}, {seed}");
             assert!((0..r.len()).all(|axis| made.motion.free[axis] || z[axis] == 0.0));
         }
@@ -103,8 +102,8 @@ fn it_is_symmetric_and_positive_at_rest_and_turned_where_nodes_slide_and_where_t
         without.follow(&made.operator(&simulation));
         two_level.follow(&made.operator(&simulation));
         let mut again = vec![0.0; p.len()];
-        two_level.apply(&p, &mut of_p);
-        without.apply(&p, &mut again);
+        two_level.apply(sums.cpu(), &p, &mut of_p);
+        without.apply(sums.cpu(), &p, &mut again);
         assert_eq!(of_p, again);
     }
 }
@@ -115,7 +114,9 @@ fn the_coarse_matrix_is_that_of_the_tangent() {
     let mut simulation = two_blocks();
     let made = Made::of(&mut simulation);
     let operator = made.operator(&simulation);
-    let pieces = find_pieces(&operator);
+    let mut fine = BlockJacobi::default();
+    fine.begin(&operator);
+    let pieces = find_pieces(&operator, &mut fine);
     assert_eq!(pieces.len(), 2);
     let mut tangent = Tangent::at_present(&simulation.world, &made.axes.bodies).unwrap();
     for piece in &pieces {
@@ -131,9 +132,9 @@ fn what_moves_a_piece_as_a_whole_is_solved_exactly() {
     turn(&mut simulation, &made, 0.8, 1.0);
     let mut two_level = TwoLevel::default();
     two_level.follow(&made.operator(&simulation));
-    let r = made.vector(0.77);
+    let (sums, r) = (Sums::on(simulation.world.resource::<Cpu>()), made.vector(0.77));
     let mut z = vec![0.0; r.len()];
-    two_level.apply(&r, &mut z);
+    two_level.apply(sums.cpu(), &r, &mut z);
     let ranges: Vec<_> = made.axes.each().map(|(_, range)| range).collect();
     for (range, axis, is_free) in [(0, 0, true), (0, 2, false), (1, 0, true), (1, 2, true)] {
         let own = || ranges[range].clone().skip(axis).step_by(3);

@@ -1,15 +1,18 @@
-//! What springs add to a coarse level, without making its factor anew.
+//! What springs add to coarse levels, without making their factors anew.
 
 use super::aggregates::RIGID;
-use super::cholesky::Cholesky;
 use std::collections::BTreeMap;
 
-/// (A + U S Uᵀ)⁻¹ = A⁻¹ − A⁻¹U G UᵀA⁻¹ with G = S (I + Uᵀ A⁻¹ U S)⁻¹ (Woodbury 1950), U the unknowns of the aggregates
-/// that springs act on and S what these make of them.
+/// Aggregates at most that springs may act on: G is found anew in each of Newton's iterations, by as many operations as
+/// the cube of them.
+pub const MOST_TOUCHED: usize = 32;
+
+/// (A + U S Uᵀ)⁻¹ = A⁻¹ − A⁻¹U G UᵀA⁻¹ with G = S (I + Uᵀ A⁻¹ U S)⁻¹ (Woodbury 1950), A the matrices of all pieces one
+/// after the other, U the unknowns of the aggregates that springs act on and S what these make of them.
 #[derive(Default)]
 pub struct Touched {
-    /// Of each aggregate that has been touched the columns of A⁻¹ of its unknowns.
-    known: BTreeMap<usize, Vec<Vec<f64>>>,
+    /// Of each aggregate that has been touched where its piece's unknowns begin, and the columns of A⁻¹ of its own.
+    known: BTreeMap<usize, (usize, Vec<Vec<f64>>)>,
     /// The unknowns that are touched now, ascending.
     unknowns: Vec<usize>,
     /// G, row by row (N/m).
@@ -17,39 +20,41 @@ pub struct Touched {
 }
 
 impl Touched {
-    /// Forgets what was of another factor.
+    /// Forgets what was of other factors.
     pub fn forget(&mut self) {
         *self = Self::default();
     }
 
     /// Its bytes.
     pub fn bytes(&self) -> usize {
-        let columns: usize = self.known.values().flatten().map(|column| size_of_val(&column[..])).sum();
+        let columns: usize = self.known.values().flat_map(|(_, all)| all).map(|column| size_of_val(&column[..])).sum();
         columns + size_of_val(&self.correction[..]) + size_of_val(&self.unknowns[..])
     }
 
-    /// Takes what springs make of these aggregates, ascending: S, row by row (N/m).
-    pub fn take(&mut self, aggregates: &[usize], stiffness: Vec<f64>, factor: &Cholesky, size: usize) {
-        let unknowns = |aggregate: usize| RIGID * aggregate..RIGID * (aggregate + 1);
+    /// Takes what springs make of these aggregates, ascending: S, row by row (N/m). `columns` are those of A⁻¹ of an
+    /// aggregate, in the unknowns of its piece, which begin somewhere.
+    pub fn take(
+        &mut self,
+        aggregates: &[usize],
+        stiffness: Vec<f64>,
+        columns: impl Fn(usize) -> (usize, Vec<Vec<f64>>),
+    ) {
         for &aggregate in aggregates {
-            let column = |unknown: usize| {
-                let mut column = vec![0.0; size];
-                column[unknown] = 1.0;
-                factor.solve(&mut column);
-                column
-            };
-            self.known.entry(aggregate).or_insert_with(|| unknowns(aggregate).map(column).collect());
+            self.known.entry(aggregate).or_insert_with(|| columns(aggregate));
         }
-        self.unknowns = aggregates.iter().flat_map(|&aggregate| unknowns(aggregate)).collect();
+        self.unknowns = aggregates.iter().flat_map(|aggregate| RIGID * aggregate..RIGID * (aggregate + 1)).collect();
         self.correction = self.corrected(stiffness).unwrap_or_default();
         if self.correction.is_empty() {
             self.unknowns.clear();
         }
     }
 
-    /// The column of A⁻¹ of an unknown that is touched.
-    fn column(&self, unknown: usize) -> &[f64] {
-        self.known.get(&(unknown / RIGID)).map_or(&[], |columns| &columns[unknown % RIGID])
+    /// The column of A⁻¹ of an unknown that is touched, and where it begins.
+    fn column(&self, unknown: usize) -> (usize, &[f64]) {
+        match self.known.get(&(unknown / RIGID)) {
+            Some((first, columns)) => (*first, &columns[unknown % RIGID]),
+            None => (0, &[]),
+        }
     }
 
     /// G by elimination with pivots of (I + S W) G = S, W = Uᵀ A⁻¹ U; `None` where it is singular.
@@ -57,10 +62,12 @@ impl Touched {
         let count = self.unknowns.len();
         let (mut right, mut left) = (stiffness, vec![0.0; count * count]);
         for j in 0..count {
-            let column = self.column(self.unknowns[j]);
+            let (first, column) = self.column(self.unknowns[j]);
+            let entry = |unknown: usize| unknown.checked_sub(first).and_then(|own| column.get(own)).copied();
+            let entries: Vec<f64> = self.unknowns.iter().map(|&unknown| entry(unknown).unwrap_or(0.0)).collect();
             for i in 0..count {
                 let row = &right[count * i..count * (i + 1)];
-                let product: f64 = row.iter().zip(&self.unknowns).map(|(s, &unknown)| s * column[unknown]).sum();
+                let product: f64 = row.iter().zip(&entries).map(|(s, entry)| s * entry).sum();
                 left[count * i + j] = product + f64::from(u8::from(i == j));
             }
         }
@@ -95,7 +102,8 @@ impl Touched {
         let at: Vec<f64> = self.unknowns.iter().map(|&unknown| x[unknown]).collect();
         for (row, &unknown) in self.correction.chunks_exact(count.max(1)).zip(&self.unknowns) {
             let less: f64 = row.iter().zip(&at).map(|(g, x)| g * x).sum();
-            x.iter_mut().zip(self.column(unknown)).for_each(|(x, column)| *x -= less * column);
+            let (first, column) = self.column(unknown);
+            x[first..].iter_mut().zip(column).for_each(|(x, column)| *x -= less * column);
         }
     }
 }

@@ -1,11 +1,13 @@
-// Hooke's law in a small strain, for `elastic` with `shear` and `bulk`; of linear.wgsl and corotational_frame.wgsl.
-// 2μ dev ε (Pa)
+// Hooke's law in the strain E that the law's own kinematics find, Green's or a small one, for `elastic` with `shear`
+// and `bulk`; of st_venant_kirchhoff.wgsl, linear.wgsl and corotational_frame.wgsl.
+// 2μ dev E (Pa)
 fn elastic_isochoric(k: Kinematics) -> Sym3 {
     return sym_scaled(sym_deviator(k.green_strain), 2.0 * elastic.shear);
 }
 
+// tr E
 fn elastic_volume_measure(k: Kinematics) -> f32 {
-    return k.volume_change;
+    return sym_trace(k.green_strain);
 }
 
 // p I (Pa)
@@ -17,7 +19,7 @@ fn elastic_without_pressure(k: Kinematics, stress: Sym3) -> Sym3 {
     return stress;
 }
 
-// κ tr ε (Pa)
+// κ tr E (Pa)
 fn elastic_pressure(theta: f32) -> f32 {
     return elastic.bulk * theta;
 }

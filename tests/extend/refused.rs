@@ -1,0 +1,83 @@
+//! What a program gets wrong about a system of its own is an error that says so, and nothing else.
+
+use sinew::components::Precision;
+use sinew::prelude::*;
+use sinew::systems::{Before, Cpu, ForceSlopes, NodeColumns, NodeSystem, NodesAtRest, Rows, SimdScalar};
+use std::path::Path;
+
+/// What the scene says under `parameters`.
+#[derive(Component, Clone, serde::Deserialize, serde::Serialize)]
+#[serde(crate = "sinew::serde", deny_unknown_fields)]
+struct Hold {
+    /// Rows that it is for.
+    rows: Vec<u32>,
+}
+
+impl NodeSystem for Hold {
+    type Columns = &'static mut ExternalForce;
+    type Prepared = ();
+
+    fn rows(&self) -> Rows<'_> {
+        Rows::List(&self.rows)
+    }
+
+    fn prepare(&self, _: &Before<'_>) {}
+
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes { stiffness: 1.0, damping: 0.0 }
+    }
+
+    fn act<T: SimdScalar>(&self, (): &(), _: &Cpu, _: &mut NodeColumns<'_, T>) {}
+}
+
+fn begun(system: System, rows: &str) -> Result<Simulation, String> {
+    let text = format!(
+        r#"(
+    duration: 1,
+    bodies: {{"cube": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2)), material: "tissue")}},
+    materials: {{"tissue": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.3))}},
+    schedule: ["boundary", "element_forces", "gather", "hold", "integrate", "observe"],
+    parameters: {{{rows}}},
+)"#
+    );
+    let scene = SceneFile::from_text("hold.ron", &text, Path::new("."), &[]).unwrap();
+    let options = Options { backend: BackendChoice::Cpu, precision: Precision::F64, ..Options::default() };
+    Simulation::with_systems(&scene, &options, &Registry::default().with(system)).map_err(|wrong| wrong.to_string())
+}
+
+fn hold() -> System {
+    System::of_nodes::<Hold>("hold", Phase::Loads, "does nothing to some nodes").on_each_body::<Hold>()
+}
+
+#[test]
+fn rows_that_are_none() {
+    begun(hold(), r#""hold": (rows: [0, 26])"#).unwrap();
+    for row in [27, u32::MAX] {
+        let wrong = begun(hold(), &format!(r#""hold": (rows: [0, {row}])"#)).err().unwrap();
+        assert_eq!(wrong, format!("`hold` is for the node of row {row}, and the body has 27 rows, from 0"));
+    }
+}
+
+#[test]
+fn parameters_that_a_shader_cannot_have() {
+    let system = hold().with_shader::<Hold>("hold.wgsl", "fn hold(node: u32) {}");
+    let wrong = begun(system, r#""hold": (rows: [0])"#).err().unwrap();
+    let said = "the parameters of `hold` do not fit: `rows`: a list of any length is nothing that a shader can have";
+    assert!(wrong.contains(said), "{wrong}");
+    assert!(wrong.contains("hold.ron:6"), "{wrong}");
+}
+
+#[test]
+fn a_system_that_runs_every_no_steps_runs_in_each() {
+    let count = |mut counted: ResMut<Counted>| counted.0 += 1;
+    let mut system = System::custom("hold", Phase::Loads, "counts", count);
+    system.every = 0;
+    let mut simulation = begun(system, "").unwrap();
+    simulation.world_mut().insert_resource(Counted(0));
+    simulation.advance(3).unwrap();
+    assert_eq!(simulation.world().resource::<Counted>().0, 3);
+}
+
+/// How often it was run.
+#[derive(Resource)]
+struct Counted(u32);
