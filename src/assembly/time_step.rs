@@ -149,7 +149,7 @@ pub fn undamped_square_frequencies(world: &World, entity: Entity) -> Vec<(f64, f
     world.resource::<Cpu>().confine(|| (0..block.count).into_par_iter().map(of_row).collect())
 }
 
-/// The stable step of one element of a block, by its row: 2/ω of its bound (s), with its damping; none of a removed one.
+/// The stable step of an element of a block, by its row: 2/ω of its bound (s), with its damping; none of a removed one.
 pub fn element_step(world: &World, entity: Entity, row: usize) -> Option<f64> {
     let block = world.get::<Block>(entity)?;
     let (frequency, shape) = (square_frequency(world, entity, block)?, world.get::<RestShape>(entity)?);

@@ -38,8 +38,8 @@ struct Run {
 }
 
 impl Session {
-    /// A session without a scene. What is loaded can be grabbed, whatever the options say; what is restored, if it could
-    /// be where it was kept.
+    /// A session without a scene. What is loaded can be grabbed, whatever the options say; what is restored, if it
+    /// could be where it was kept.
     pub fn new(options: Options) -> Self {
         let options = Options { grabs: true, ..options };
         let look = Look::default();

@@ -20,7 +20,8 @@ mod of_nodes {
     impl NodeSystem for Magnet {
         // what it reads and writes
         type Columns = (&'static RestPosition, &'static Displacement, &'static Mass, &'static mut ExternalForce);
-        // what a step needs beside the component: found out before any node moves, and the only place that sees nodes of other rows
+        // what a step needs beside the component: found out before any node moves,
+        // and the only place that sees nodes of other rows
         type Prepared = (DVec3, f64);
 
         fn prepare(&self, before: &Before<'_>) -> (DVec3, f64) {

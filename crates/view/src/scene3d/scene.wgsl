@@ -212,8 +212,8 @@ fn film(normal: vec3f, light: vec2f, dull: f32) -> f32 {
 }
 
 // Tissue: light goes in, is scattered, and comes out redder beyond the edge of its shadow and where it is thin.
-// `place`: where noise is taken, and `pixel`: how far that goes on from a pixel to the next, both so that 34 is about the
-// size of a body. `painted`: the colour of a picture, with a weight of 1, or 0.
+// `place`: where noise is taken, and `pixel`: how far that goes on from a pixel to the next, both so that 34 is about
+// the size of a body. `painted`: the colour of a picture, with a weight of 1, or 0.
 fn tissue(normal: vec3f, place: vec3f, number: u32, light: vec2f, pixel: f32, painted: vec4f) -> vec3f {
     let colour = tissues[2u * number];
     let scatter = tissues[2u * number + 1u];
