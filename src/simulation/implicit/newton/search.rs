@@ -88,8 +88,8 @@ impl Newton<'_, '_> {
                 let now = self.residual();
                 work = self.sums.dot(&self.space.p, &self.space.g);
                 let descends = self.descends(&way, (share, work), touches.then_some(&bracket));
-                // of what is moved as told the work may be of either sign, and what slides is rubbed by what presses it,
-                // of which a symmetric tangent does not know: it leads there where less is left
+                // of what is moved as told the work may be of either sign, and what slides is rubbed by what presses
+                // it, of which a symmetric tangent does not know: it leads there where less is left
                 let arrives = touches && now <= if moves { DESCENT } else { FALLS } * *size;
                 if now.is_finite() && (descends || arrives || self.settings.newton == 1 || now <= enough) {
                     self.space.to_go.iter_mut().for_each(|left| *left *= 1.0 - share);
