@@ -358,7 +358,7 @@ impl Newton<'_, '_> {
         // the world is where the residual was taken
         self.trial.axes.displace(self.trial.world, &self.space.w);
         let formula = &self.settings.formula;
-        let springs = self.trial.springs.slopes(formula.stiffness(), formula.step());
+        let springs = self.trial.springs.slopes(formula);
         self.preconditioner.follow(&Operator {
             world: self.trial.world,
             bodies: &self.trial.axes.bodies,

@@ -2,6 +2,7 @@
 //! the place at which a Newton iteration takes its tangent: a difference of forces would see some let go, others not.
 
 use super::axes::Axes;
+use super::formula::Formula;
 use super::preconditioner::SpringSlope;
 use crate::components::{Clock, SpringForces, TouchingSpring};
 use crate::error::Error;
@@ -62,11 +63,13 @@ impl Springs {
         }
     }
 
-    /// Those that touch and ties that hold, with a share of their slopes as [`add_product`](Self::add_product) has it
-    /// (N/m).
-    pub fn slopes(&self, share: f64, step: f64) -> Vec<SpringSlope<'_>> {
+    /// Those that touch and ties that hold, with slopes as the formula of a step has them (N/m). Not ties at rest: the
+    /// blocks of nodes would know of them, and nothing else (three times the iterations of two glued blocks).
+    pub fn slopes(&self, formula: &Formula) -> Vec<SpringSlope<'_>> {
+        let (share, step) = (formula.stiffness(), formula.step());
         let slope = |spring: &TouchingSpring| (spring.slopes[0] + spring.slopes[1] * step) * share;
-        let all = self.touching.iter().chain(&self.ties);
+        let ties = if formula.is_of_rest() { &[][..] } else { &self.ties };
+        let all = self.touching.iter().chain(ties);
         all.map(|spring| SpringSlope { parts: &spring.parts, slope: slope(spring) }).collect()
     }
 

@@ -23,7 +23,8 @@ use touched::{MOST_TOUCHED, Touched};
 
 /// B r = Q (D⁻¹ + P A⁻¹ Pᵀ) Qᵀ r, D the diagonal blocks, P the rigid motions of aggregates of some 30 nodes, A = Pᵀ
 /// (D + c K) P their dense matrix, a piece of a body each, Q the rotations of the aggregates. Springs that touch are in
-/// D and in A, which they couple pieces in; of more aggregates than they may act on there, in D alone.
+/// D and in A, which they couple pieces in; of more aggregates than they may act on there, in D alone. At rest, where
+/// rigid motions of a piece that nothing else holds are left out of A, springs that couple pieces are in D alone, too.
 ///
 /// Of a piece that nothing holds along an axis, what it does as a whole is solved apart from that: B t = t tᵀ r / tᵀ D
 /// t along its translation t, and the rest of B without a mean motion. So it keeps its linear momentum however early a
@@ -131,7 +132,14 @@ impl TwoLevel {
     /// Takes the springs that touch, with aggregates as they have turned: Pᵀ of them P.
     fn touch(&mut self, operator: &Operator<'_>) {
         let place = |first: usize| self.places[first / 3].map(|place| place.map(|number| number as usize));
-        let parts = operator.springs.iter().flat_map(|spring| spring.parts);
+        let at_rest = operator.inertia.iter().all(|&inertia| inertia == 0.0);
+        let is_of_one = |spring: &&SpringSlope<'_>| {
+            let mut pieces = spring.parts.iter().filter_map(|&(first, _)| Some(place(first)?[0]));
+            let one = pieces.next();
+            pieces.all(|piece| Some(piece) == one)
+        };
+        let springs: Vec<_> = operator.springs.iter().filter(|spring| !at_rest || is_of_one(spring)).collect();
+        let parts = springs.iter().flat_map(|spring| spring.parts);
         let on = parts.filter_map(|&(first, _)| {
             let [piece, own] = place(first)?;
             let Piece { coarse, first, .. } = &self.pieces[piece];
@@ -139,8 +147,8 @@ impl TwoLevel {
         });
         let aggregates: Vec<usize> = on.collect::<BTreeSet<usize>>().into_iter().collect();
         let (aggregates, springs) = match aggregates.len() {
-            0..=MOST_TOUCHED => (aggregates, operator.springs),
-            _ => (Vec::new(), &[][..]),
+            0..=MOST_TOUCHED => (aggregates, springs),
+            _ => (Vec::new(), Vec::new()),
         };
         let count = RIGID * aggregates.len();
         let mut stiffness = vec![0.0; count * count];
