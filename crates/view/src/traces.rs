@@ -45,7 +45,8 @@ impl Traces {
     }
 
     /// All of it as CSV: a row for each time (s), a column for each energy (J) and each number of a probe, which are
-    /// given by names and numbers with units; what is no number is empty.
+    /// given by names and numbers with units; what is no number is empty. A page writes no files.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn table<'a>(&self, probes: impl Iterator<Item = (&'a str, &'a [String])>) -> String {
         let energies = ENERGIES.iter().map(|name| format!("{name} (J)"));
         let of_probes =
