@@ -32,8 +32,10 @@ pub(super) fn derived_stages<S: NodeSystem + serde::Serialize>(
         .query::<(Entity, &S, Option<&OfBody>, Option<&ShareOf<S>>)>()
         .iter(world)
         .map(|(entity, system, of, share)| {
-            // what does not fit has been refused when the simulation was made
-            let parameters = Parameters::of(system).unwrap_or_default();
+            let parameters = Parameters::of(system).unwrap_or_else(|wrong| {
+                debug_assert!(false, "not refused when the simulation was made: {wrong}");
+                Parameters::default()
+            });
             (of.map_or(entity, |of| of.0), parameters, share.map(|share| share.share).unwrap_or_default())
         })
         .collect();

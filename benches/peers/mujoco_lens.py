@@ -1,9 +1,9 @@
 """MuJoCo's flex: St. Venant-Kirchhoff tetrahedra, a body of three slides a node. It has f64 only."""
 
 import mujoco
-import numpy as np
 
 from lens import POISSON, YOUNG, Lens, measure
+from mujoco_cubes import words
 
 SCENE = """
 <mujoco>
@@ -20,10 +20,6 @@ SCENE = """
   </worldbody>
 </mujoco>
 """
-
-
-def words(numbers):
-    return " ".join(f"{number:.9g}" for number in np.ravel(numbers))
 
 
 class Body:

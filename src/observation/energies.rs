@@ -86,10 +86,8 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
     bring_to_host(world, |_, name| wanted.contains(&name))?;
     let rate = world.resource::<Clock>().rate();
     let mut sum = Energies::default();
-    let mut bodies =
-        world
-            .query::<(Entity, (&Mass, Option<&InertialMass>), &DisplacementIncrement, &ConstrainedAxes, Option<&Work>)>(
-            );
+    type Masses<'a> = (&'a Mass, Option<&'a InertialMass>);
+    let mut bodies = world.query::<(Entity, Masses<'_>, &DisplacementIncrement, &ConstrainedAxes, Option<&Work>)>();
     for (_, (mass, inertia), step, axes, work) in bodies.iter(world) {
         // what moves is all that resists acceleration
         let mass = inertia.map_or(&mass.0, |inertia| &inertia.0);

@@ -147,7 +147,7 @@ pub const UNITS: &[(&str, &str)] = &[
     ("energies.contact_loss", "J"),
     ("implicit.largest_residual_left", "1"),
     ("implicit.longest_step", "s"),
-    ("implicit.most_steps", "s"),
+    ("implicit.step_percentile_99", "s"),
     ("energies.constraint_work", "J"),
     ("energies.internal_work", "J"),
     ("mass", "kg"),

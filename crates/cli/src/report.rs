@@ -140,7 +140,7 @@ fn implicit(took: &ImplicitSteps, to_rest: bool, page: &mut Page) {
     let (left, above) = (digits(took.largest_residual_left), counted(took.unsolved, one));
     page.row("", format!("largest share of a residual left: {left}; {above} above the tolerance"));
     let (most, longest) = (took.most_passes, quantity(took.longest_step, "s"));
-    let (of_most, held) = (quantity(took.most_steps, "s"), bytes(took.preconditioner_bytes));
+    let (of_most, held) = (quantity(took.step_percentile_99, "s"), bytes(took.preconditioner_bytes));
     page.row(
         "",
         format!("at most {most} passes and {longest} for one, {of_most} for 99 of 100; {held} of preconditioner"),

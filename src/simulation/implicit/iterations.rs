@@ -81,7 +81,7 @@ impl Iterations {
         let seconds = started.elapsed().as_secs_f64();
         self.durations.count(seconds);
         self.report.longest_step = self.report.longest_step.max(seconds);
-        self.report.most_steps = self.durations.of_most().min(self.report.longest_step);
+        self.report.step_percentile_99 = self.durations.of_most().min(self.report.longest_step);
     }
 
     /// What it does in words after `first`, and what it holds at the present state, for `explain`. The first step

@@ -28,7 +28,7 @@ pub struct ImplicitSteps {
     /// How long the longest step took (s).
     pub longest_step: f64,
     /// How long 99 of 100 steps took at most (s), to 4 %.
-    pub most_steps: f64,
+    pub step_percentile_99: f64,
 }
 
 /// Parts of an octave, and the shortest time that is told from others (s).

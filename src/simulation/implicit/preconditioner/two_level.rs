@@ -156,7 +156,7 @@ impl TwoLevel {
         for spring in springs {
             let is_held = is_outside(spring, |first| place(first).is_none());
             // of each unknown the point's motion against what it touches
-            let mut ways = vec![(0, DVec3::ZERO); 0];
+            let mut ways: Vec<(usize, DVec3)> = Vec::new();
             for &(first, weight) in spring.parts {
                 let Some([piece, own]) = place(first) else { continue };
                 held[piece] |= is_held;
