@@ -11,7 +11,7 @@ use crate::playback::Playback;
 use crate::scene3d::Scene3d;
 use crate::settings::Settings;
 use crate::shot::Shot;
-use crate::source::Source;
+use crate::source::{Source, Steps};
 use crate::stage;
 use crate::surfaces::Scenery;
 use crate::traces::Traces;
@@ -248,6 +248,12 @@ impl App {
         }
         self.scenery = Scenery::new(lends, None);
         (self.traces, self.values, self.asked) = (Traces::default(), Values::default(), [None; 2]);
+    }
+
+    /// The frames in which the simulation takes its steps, to be taken by the caller from now on and not by those of
+    /// the window; none where it has a thread of its own.
+    pub fn steps(&self) -> Option<Steps> {
+        self.source.take_over()
     }
 
     /// Begins with a scene: the first one is seen as its picture would be.

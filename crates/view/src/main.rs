@@ -2,14 +2,12 @@
 
 use clap::{Parser, ValueEnum};
 use eframe::egui;
-use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use sinew::components::Precision;
 use sinew::scene::schema::OutputField;
-use sinew::{BackendChoice, Host, Options, Snapshot};
-use sinew_view::{App, FIELDS, Settings, Shot, Start, headless, measure};
+use sinew::{BackendChoice, Options, Snapshot};
+use sinew_view::{App, FIELDS, Settings, Shot, Start, headless, measure, screen};
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::Arc;
 use std::time::Duration;
 
 /// Shows a scene while it runs: look at it from all sides, pull at it, change it.
@@ -138,19 +136,10 @@ fn main() -> ExitCode {
         };
     }
     let viewport = egui::ViewportBuilder::default().with_inner_size([1280.0, 800.0]).with_title("sinew");
-    let setup = WgpuSetupCreateNew {
-        device_descriptor: Arc::new(Host::device_descriptor),
-        ..WgpuSetupCreateNew::without_display_handle()
-    };
-    let wgpu_options = WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() };
+    let wgpu_options = screen::configuration();
     let options = eframe::NativeOptions { viewport, wgpu_options, ..eframe::NativeOptions::default() };
     let app: eframe::AppCreator<'_> = Box::new(|context| {
-        // what is simulated on the window's device is drawn from where it is
-        start.options.host = context.wgpu_render_state.as_ref().map(|screen| Host {
-            adapter: screen.adapter.clone(),
-            device: screen.device.clone(),
-            queue: screen.queue.clone(),
-        });
+        start.options.host = screen::host(context);
         Ok(Box::new(App::on_screen(context, start)))
     });
     match eframe::run_native("sinew", options, app) {

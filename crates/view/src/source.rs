@@ -5,6 +5,8 @@ use sinew::Options;
 #[cfg(not(target_arch = "wasm32"))]
 use sinew::driver::Driver;
 use sinew::driver::{Command, FrameDriver, State};
+use std::cell::{Cell, RefCell};
+use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -23,6 +25,11 @@ pub trait Drive {
 
     /// Takes steps, where the frames of the window do.
     fn frame(&mut self) {}
+
+    /// Those frames, for who takes them instead of the window.
+    fn take_over(&self) -> Option<Steps> {
+        None
+    }
 
     /// The newest state.
     fn state(&self) -> Arc<State>;
@@ -58,30 +65,71 @@ impl Drive for Driver {
 /// What of a frame goes into steps; drawing takes its time of the same thread.
 const BUDGET: Duration = Duration::from_millis(10);
 
-/// A simulation in the frames of a window, which it asks for.
+/// A simulation in frames: those of the window, or of who took them over ([`App::steps`](crate::App::steps)). Where one
+/// waits for a device, in a page, it may be put aside for as long as that takes; the window goes on with the newest
+/// state, and what is sent meanwhile is done in the next.
+#[derive(Clone)]
+pub struct Steps(Rc<Framed>);
+
 struct Framed {
-    driver: FrameDriver,
+    driver: RefCell<FrameDriver>,
+    /// What is to be done in the next frame.
+    commands: RefCell<Vec<Command>>,
+    sent: Cell<u64>,
+    newest: RefCell<Arc<State>>,
+    /// Whether somebody else than the window takes them.
+    taken_over: Cell<bool>,
     context: egui::Context,
 }
 
-impl Drive for Framed {
+impl Steps {
+    fn new(options: &Options, context: &egui::Context) -> Self {
+        Self(Rc::new(Framed {
+            driver: RefCell::new(FrameDriver::new(options.clone())),
+            commands: RefCell::default(),
+            sent: Cell::default(),
+            newest: RefCell::default(),
+            taken_over: Cell::default(),
+            context: context.clone(),
+        }))
+    }
+
+    /// Does what was sent, and takes the steps that are due; nothing while it is put aside.
+    pub fn take(&self) {
+        let Ok(mut driver) = self.0.driver.try_borrow_mut() else { return };
+        self.0.commands.take().into_iter().for_each(|command| driver.send(command));
+        let is_new = driver.is_behind() | driver.frame(BUDGET);
+        *self.0.newest.borrow_mut() = driver.state();
+        if is_new {
+            self.0.context.request_repaint();
+        }
+    }
+}
+
+impl Drive for Steps {
     fn send(&mut self, command: Command) {
-        self.driver.send(command);
-        self.context.request_repaint();
+        self.0.commands.borrow_mut().push(command);
+        self.0.sent.set(self.0.sent.get() + 1);
+        self.0.context.request_repaint();
     }
 
     fn frame(&mut self) {
-        if self.driver.frame(BUDGET) {
-            self.context.request_repaint();
+        if !self.0.taken_over.get() {
+            self.take();
         }
     }
 
+    fn take_over(&self) -> Option<Steps> {
+        self.0.taken_over.set(true);
+        Some(self.clone())
+    }
+
     fn state(&self) -> Arc<State> {
-        self.driver.state()
+        self.0.newest.borrow().clone()
     }
 
     fn is_behind(&self) -> bool {
-        self.driver.is_behind()
+        self.state().commands < self.0.sent.get()
     }
 }
 
@@ -101,13 +149,21 @@ impl Source {
 
     /// A simulation in the frames of the window, without a scene yet.
     pub fn framed(options: &Options, context: &egui::Context) -> Self {
-        Self::Live(Box::new(Framed { driver: FrameDriver::new(options.clone()), context: context.clone() }))
+        Self::Live(Box::new(Steps::new(options, context)))
     }
 
     /// Takes steps, where the frames of the window do.
     pub fn frame(&mut self) {
         if let Self::Live(driver) = self {
             driver.frame();
+        }
+    }
+
+    /// Frames that the window took, for somebody else to take; none of what has a thread.
+    pub fn take_over(&self) -> Option<Steps> {
+        match self {
+            Self::Live(driver) => driver.take_over(),
+            Self::Finished(_) => None,
         }
     }
 

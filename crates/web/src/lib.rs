@@ -3,12 +3,14 @@
 
 mod run;
 mod scenes;
+mod waiting;
 
 use eframe::{WebOptions, WebRunner};
 use serde_json::json;
 use sinew::driver::State;
 use sinew::{BackendChoice, Options};
-use sinew_view::{App, FIELDS, Settings, Start};
+use sinew_view::{App, FIELDS, Settings, Start, Steps, screen};
+use std::cell::RefCell;
 use wasm_bindgen::prelude::*;
 use web_sys::HtmlCanvasElement;
 
@@ -27,7 +29,8 @@ impl Page {
         Self { runner: WebRunner::new() }
     }
 
-    /// Begins with the shipped scene of a name, or with a text if one is given, in the colours of a field.
+    /// Begins with the shipped scene of a name, or with a text if one is given, in the colours of a field, on `cpu`,
+    /// `gpu` or where it is best.
     ///
     /// # Errors
     /// That nothing can be drawn: there is neither WebGPU nor WebGL.
@@ -38,22 +41,30 @@ impl Page {
         text: Option<String>,
         run: bool,
         field: Option<String>,
+        backend: Option<String>,
     ) -> Result<(), JsValue> {
         let mut bundle = scenes::bundle();
         if let Some(text) = text {
             bundle.scenes.insert(0, (scene.clone(), text));
         }
         let field = field.and_then(|name| FIELDS.into_iter().find(|field| field.array() == name));
-        let start = Start {
+        let options = options(backend.as_deref())?;
+        let mut start = Start {
             scene: Some(scene.into()),
-            options: Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() },
+            options,
             run,
             settings: Settings { field, ..Settings::default() },
             bundle: Some(bundle),
             ..Start::default()
         };
-        let app: eframe::AppCreator<'static> = Box::new(move |context| Ok(Box::new(App::on_screen(context, start))));
-        self.runner.start(canvas, WebOptions::default(), app).await
+        let app: eframe::AppCreator<'static> = Box::new(move |context| {
+            start.options.host = screen::host(context);
+            Ok(Box::new(App::on_screen(context, start)))
+        });
+        let options = WebOptions { wgpu_options: screen::configuration(), ..WebOptions::default() };
+        self.runner.start(canvas, options, app).await?;
+        STEPS.set(self.runner.app_mut::<App>().and_then(|app| app.steps()));
+        Ok(())
     }
 
     /// What is seen, for who tests it: an object in JSON, or `null` before it has begun.
@@ -65,6 +76,34 @@ impl Page {
     pub fn panicked(&self) -> Option<String> {
         self.runner.panic_summary().map(|summary| summary.message())
     }
+}
+
+thread_local! {
+    static STEPS: RefCell<Option<Steps>> = const { RefCell::new(None) };
+}
+
+/// Takes the steps that are due: the page calls it once a frame, in turn with what else may be put aside (`wait.js`).
+#[wasm_bindgen]
+pub fn take_steps() {
+    if let Some(steps) = STEPS.with_borrow(Clone::clone) {
+        steps.take();
+    }
+}
+
+#[wasm_bindgen(start)]
+fn begin() {
+    waiting::begin();
+}
+
+/// How simulations run, by the name of the backend.
+fn options(backend: Option<&str>) -> Result<Options, JsValue> {
+    let backend = match backend {
+        None | Some("auto") => BackendChoice::Auto,
+        Some("cpu") => BackendChoice::Cpu,
+        Some("gpu") => BackendChoice::Gpu,
+        Some(other) => return Err(JsValue::from_str(&format!("backend: `{other}` is none of `auto`, `cpu`, `gpu`"))),
+    };
+    Ok(Options { backend, threads: 1, ..Options::default() })
 }
 
 fn status(app: &App) -> String {

@@ -25,7 +25,8 @@ struct Arguments {
 }
 
 const TARGET: &str = "wasm32-unknown-unknown";
-const PAGE: &str = include_str!("../page/index.html");
+const PAGE: [(&str, &str); 2] =
+    [("index.html", include_str!("../page/index.html")), ("wait.js", include_str!("../page/wait.js"))];
 
 fn main() -> ExitCode {
     match make(&Arguments::parse()) {
@@ -60,7 +61,9 @@ fn make(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
         .typescript(false)
         .remove_name_section(true)
         .generate(&arguments.out)?;
-    std::fs::write(arguments.out.join("index.html"), PAGE)?;
+    for (name, text) in PAGE {
+        std::fs::write(arguments.out.join(name), text)?;
+    }
     let module = std::fs::read(arguments.out.join("sinew_web_bg.wasm"))?;
     let packed = packed(&module)?;
     let told = format!("{}: {} bytes of WebAssembly, {packed} packed by gzip", arguments.out.display(), module.len());

@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 
 use wgpu::{Adapter, Backends, DeviceType, Instance, InstanceDescriptor};
 
+use super::waiting::{block_on, can_wait};
 use super::{AdapterReport, Choice, NoGpu};
 
 impl AdapterReport {
@@ -43,7 +44,7 @@ fn instance() -> &'static Instance {
     static INSTANCE: OnceLock<Instance> = OnceLock::new();
     INSTANCE.get_or_init(|| {
         let mut descriptor = InstanceDescriptor::new_without_display_handle();
-        descriptor.backends = Backends::VULKAN | Backends::METAL | Backends::DX12;
+        descriptor.backends = Backends::VULKAN | Backends::METAL | Backends::DX12 | Backends::BROWSER_WEBGPU;
         // validation layers cost time and write to the terminal; this layer checks what it passes on
         descriptor.flags = wgpu::InstanceFlags::empty();
         Instance::new(descriptor)
@@ -51,7 +52,7 @@ fn instance() -> &'static Instance {
 }
 
 fn candidates() -> Vec<(Adapter, AdapterReport)> {
-    let adapters = pollster::block_on(instance().enumerate_adapters(Backends::all()));
+    let adapters = block_on(instance().enumerate_adapters(Backends::all()));
     let mut found: Vec<_> = adapters.into_iter().map(|a| (AdapterReport::of(&a), a)).map(|(r, a)| (a, r)).collect();
     // stable: the driver's own order decides among equals
     found.sort_by_key(|(_, report)| report.rank());
@@ -60,6 +61,9 @@ fn candidates() -> Vec<(Adapter, AdapterReport)> {
 
 /// The best device that the choice takes.
 pub(super) fn choose(choice: &Choice) -> Result<(Adapter, AdapterReport), NoGpu> {
+    if !can_wait() {
+        return Err(NoGpu::MayNotWait);
+    }
     let found = candidates();
     if found.is_empty() {
         return Err(NoGpu::NoDriver);

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use bytemuck::{AnyBitPattern, NoUninit};
-use wgpu::{BufferDescriptor, BufferUsages, CommandEncoderDescriptor, MapMode};
+use wgpu::{BufferDescriptor, BufferUsages, BufferView, CommandEncoder, CommandEncoderDescriptor, MapMode};
 
+use super::waiting::Mapped;
 use super::{BufferKind, Gpu, GpuError, Memory};
 use crate::backend::kernel::BufferId;
 
@@ -155,25 +156,15 @@ impl Gpu {
         let staging = self.staging(total)?;
         let buffers =
             batch.iter().map(|piece| Ok(&self.slot(piece.id)?.buffer)).collect::<Result<Vec<_>, GpuError>>()?;
-        let index = self.heard(|| {
-            let mut encoder = self.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("download") });
+        let mut encoder = self.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("download") });
+        self.heard(|| {
             let mut at = 0;
             for (piece, buffer) in batch.iter().zip(buffers) {
                 encoder.copy_buffer_to_buffer(buffer, piece.offset, &staging, at, piece.size);
                 at += piece.size;
             }
-            let index = self.queue.submit([encoder.finish()]);
-            staging.map_async(MapMode::Read, 0..total, |_| {});
-            index
         });
-        self.last = Some(index);
-        if let Err(failed) = self.wait() {
-            // it may stay mapped: the next download has another
-            self.staging = None;
-            return Err(failed);
-        }
-        let view = staging.get_mapped_range(0..total);
-        let view = view.map_err(|e| GpuError::Device { during: "download".to_owned(), message: e.to_string() })?;
+        let view = self.read("download", encoder, &staging, total)?;
         let mut at = 0;
         for piece in batch {
             out[piece.index].extend_from_slice(&view[at..at + piece.size as usize]);
@@ -182,6 +173,31 @@ impl Gpu {
         drop(view);
         staging.unmap();
         Ok(())
+    }
+
+    /// Submits what copies into a buffer that the CPU can read, and waits for that: its first bytes.
+    pub(super) fn read(
+        &mut self,
+        label: &str,
+        encoder: CommandEncoder,
+        staging: &wgpu::Buffer,
+        bytes: u64,
+    ) -> Result<BufferView, GpuError> {
+        let mapped = Mapped::default();
+        let index = self.heard(|| {
+            let index = self.queue.submit([encoder.finish()]);
+            staging.map_async(MapMode::Read, 0..bytes, mapped.told());
+            index
+        });
+        self.last = Some(index);
+        if let Err(failed) = self.wait() {
+            // it may stay mapped: the next to be read is another
+            self.staging = None;
+            return Err(failed);
+        }
+        mapped.wait();
+        let view = staging.get_mapped_range(0..bytes);
+        view.map_err(|e| GpuError::Device { during: label.to_owned(), message: e.to_string() })
     }
 
     /// A buffer the CPU can read, of at least this size; kept from one download to the next.

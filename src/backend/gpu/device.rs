@@ -1,9 +1,11 @@
 //! One open device.
 
 use std::collections::HashMap;
+#[cfg(target_arch = "wasm32")]
+use std::sync::Arc;
 use std::time::Duration;
 
-use wgpu::{Adapter, Device, ErrorFilter, Features, Limits, PollError, PollType, Queue, SubmissionIndex};
+use wgpu::{Adapter, Device, ErrorFilter, Features, Limits, PollError, PollStatus, PollType, Queue, SubmissionIndex};
 
 use super::adapter::choose;
 use super::buffers::Slot;
@@ -14,6 +16,9 @@ use super::quirks::safe_uniforms;
 use super::run::StepRecords;
 use super::submission_throttle::SubmissionThrottle;
 use super::timing::Timing;
+#[cfg(target_arch = "wasm32")]
+use super::waiting::Bell;
+use super::waiting::block_on;
 use super::{AdapterReport, Choice, GpuError, GpuLimits, NoGpu, SmallerLimits};
 use crate::backend::kernel::MostBuffers;
 
@@ -136,7 +141,7 @@ impl Gpu {
 
     /// Waits for one submission, or for the last of ours: a program that shares the device may have more.
     pub(super) fn wait_for(&mut self, one: Option<SubmissionIndex>) -> Result<(), GpuError> {
-        let polled = self.device.poll(match one.or_else(|| self.last.clone()) {
+        let polled = self.polled(match one.or_else(|| self.last.clone()) {
             None => PollType::Poll,
             submission_index => PollType::Wait { submission_index, timeout: Some(PATIENCE) },
         });
@@ -147,7 +152,7 @@ impl Gpu {
             Err(other) => {
                 // what a lost device was handed was never submitted, and it says so when it is asked without a number
                 // only
-                let _ = self.device.poll(PollType::Poll);
+                let _ = self.polled(PollType::Poll);
                 self.check("waiting for the GPU")?;
                 match self.adopted {
                     // its handler is the program's: this is all that is heard of it
@@ -158,6 +163,23 @@ impl Gpu {
                 }
             }
         }
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
+    fn polled(&self, what: PollType) -> Result<PollStatus, PollError> {
+        self.device.poll(what)
+    }
+
+    /// A browser knows no submission by its number: this waits for all of them.
+    #[cfg(target_arch = "wasm32")]
+    fn polled(&self, what: PollType) -> Result<PollStatus, PollError> {
+        if let PollType::Wait { .. } = what {
+            let bell = Arc::new(Bell::default());
+            let done = bell.clone();
+            self.queue.on_submitted_work_done(move || done.ring());
+            bell.wait();
+        }
+        Ok(PollStatus::QueueEmpty)
     }
 
     /// Err with what the device complained of since the last call.
@@ -195,7 +217,7 @@ impl Gpu {
 }
 
 fn request(adapter: &Adapter) -> Result<(Device, Queue), wgpu::RequestDeviceError> {
-    pollster::block_on(adapter.request_device(&Host::device_descriptor(adapter)))
+    block_on(adapter.request_device(&Host::device_descriptor(adapter)))
 }
 
 /// Errors of a device of our own come by its callback. Of an adopted one they are caught around each of our calls, so
@@ -208,9 +230,7 @@ fn heard<T>(device: &Device, inbox: &Inbox, adopted: bool, act: impl FnOnce() ->
     let scopes = kinds.map(|kind| device.push_error_scope(kind));
     let done = act();
     for scope in scopes.into_iter().rev() {
-        if let Some(error) = pollster::block_on(scope.pop()) {
-            inbox.put(Event::of(error));
-        }
+        inbox.expect(scope.pop());
     }
     done
 }

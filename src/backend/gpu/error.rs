@@ -14,6 +14,12 @@ pub enum NoGpu {
          mesa-vulkan-drivers for a software device (Debian, Ubuntu); the CPU backend needs neither"
     )]
     NoDriver,
+    /// A page whose browser has no way to wait for a device, or that did not say how (`gpu::wait_by`).
+    #[error(
+        "no GPU: this browser cannot wait for one, for which it needs JavaScript Promise Integration (Chromium from 137 \
+         on); the CPU backend needs none"
+    )]
+    MayNotWait,
     /// There are devices, and none is what was asked for.
     #[error("no GPU matches {wanted}; there is {}", found.join(", "))]
     NoMatch {

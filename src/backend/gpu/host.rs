@@ -2,6 +2,7 @@
 
 use wgpu::{Adapter, Device, DeviceDescriptor, Features, Limits, Queue};
 
+use super::waiting::can_wait;
 use super::{AdapterReport, Choice, Gpu, NoGpu};
 use crate::backend::kernel::MostBuffers;
 
@@ -40,9 +41,12 @@ impl Gpu {
     /// Takes over a program's device, which stays the program's own: see [`Host`].
     ///
     /// # Errors
-    /// [`NoGpu::TooSmall`]: it was opened with fewer buffers a kernel than kernels have, though its adapter has more;
+    /// [`NoGpu::MayNotWait`] in a page that did not say how it waits; [`NoGpu::TooSmall`]: it was opened with fewer buffers a kernel than kernels have, though its adapter has more;
     /// [`NoGpu::NoMatch`]: it is not what the choice takes.
     pub fn adopt(host: Host, choice: &Choice) -> Result<Self, NoGpu> {
+        if !can_wait() {
+            return Err(NoGpu::MayNotWait);
+        }
         let report = AdapterReport::of(&host.adapter);
         if !choice.takes(&report) {
             return Err(NoGpu::NoMatch { wanted: choice.to_string(), found: vec![report.to_string()] });

@@ -1,13 +1,20 @@
 //! Errors that wgpu tells of by callbacks.
 
+use std::pin::Pin;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::task::{Context, Poll, Waker};
 
 /// Where wgpu's callbacks leave their errors until the next call picks them up.
 #[derive(Clone, Default)]
 pub(super) struct Inbox(Arc<Mutex<Letters>>);
 
+/// The error of a scope, once it is known.
+type Expected = Pin<Box<dyn Future<Output = Option<wgpu::Error>> + Send>>;
+
 #[derive(Default)]
 struct Letters {
+    /// in a page they come when its own code has ended
+    expected: Vec<Expected>,
     errors: Vec<Event>,
     /// stays: a lost device does not come back, and wgpu is silent about all that follows
     lost: Option<String>,
@@ -43,6 +50,11 @@ impl Inbox {
         inbox
     }
 
+    /// Leaves what a scope will have caught: known at once, but in a page.
+    pub(super) fn expect(&self, error: impl Future<Output = Option<wgpu::Error>> + Send + 'static) {
+        self.open().expected.push(Box::pin(error));
+    }
+
     /// Leaves something that went wrong.
     pub(super) fn put(&self, event: Event) {
         self.open().errors.push(event);
@@ -56,6 +68,14 @@ impl Inbox {
     /// consequences.
     pub(super) fn take(&self) -> Option<Event> {
         let mut letters = self.open();
+        let Letters { expected, errors, .. } = &mut *letters;
+        expected.retain_mut(|error| match error.as_mut().poll(&mut Context::from_waker(Waker::noop())) {
+            Poll::Ready(error) => {
+                errors.extend(error.map(Event::of));
+                false
+            }
+            Poll::Pending => true,
+        });
         let errors = std::mem::take(&mut letters.errors);
         letters.lost.clone().map(Event::Lost).or_else(|| errors.into_iter().next())
     }

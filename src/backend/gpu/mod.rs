@@ -43,6 +43,8 @@ mod run;
 mod submission_throttle;
 #[cfg(feature = "gpu")]
 mod timing;
+#[cfg(feature = "gpu")]
+mod waiting;
 
 #[cfg(not(feature = "gpu"))]
 mod absent;
@@ -56,3 +58,5 @@ pub use error::{GpuError, NoGpu};
 pub use host::{Buffer, Host};
 pub use report::{AdapterReport, BufferKind, Choice, GpuLimits, KernelTime, Memory, SmallerLimits};
 pub use testing::gpu_or_reason;
+#[cfg(all(feature = "gpu", target_arch = "wasm32"))]
+pub use waiting::{Waiting, wait_by};

@@ -3,8 +3,8 @@
 
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
-use std::time::Instant;
 
+use web_time::Instant;
 use wgpu::SubmissionIndex;
 
 use crate::backend::kernel::KernelId;

@@ -4,8 +4,8 @@
 //! slower than a normal run, which has one pass a submission.
 
 use wgpu::{
-    Buffer, BufferDescriptor, BufferUsages, CommandEncoder, ComputePassDescriptor, ComputePassTimestampWrites, MapMode,
-    QuerySet, QuerySetDescriptor, QueryType,
+    Buffer, BufferDescriptor, BufferUsages, CommandEncoder, ComputePassDescriptor, ComputePassTimestampWrites, QuerySet,
+    QuerySetDescriptor, QueryType,
 };
 
 use super::{Gpu, GpuError, KernelTime};
@@ -86,17 +86,9 @@ impl Gpu {
         let resolved = timing.resolved.clone();
         let bytes = 16 * labels.len().min(MOST_DISPATCHES as usize) as u64;
         let staging = self.staging(bytes)?;
-        let index = self.heard(|| {
-            let mut encoder = self.device.create_command_encoder(&Default::default());
-            encoder.copy_buffer_to_buffer(&resolved, 0, &staging, 0, bytes);
-            let index = self.queue.submit([encoder.finish()]);
-            staging.map_async(MapMode::Read, 0..bytes, |_| {});
-            index
-        });
-        self.last = Some(index);
-        self.wait()?;
-        let view = staging.get_mapped_range(0..bytes);
-        let view = view.map_err(|e| GpuError::Device { during: "kernel times".to_owned(), message: e.to_string() })?;
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        self.heard(|| encoder.copy_buffer_to_buffer(&resolved, 0, &staging, 0, bytes));
+        let view = self.read("kernel times", encoder, &staging, bytes)?;
         let period = f64::from(self.queue.get_timestamp_period());
         for (pair, label) in view.chunks_exact(16).zip(labels) {
             let stamp = |half: &[u8]| bytemuck::pod_read_unaligned::<u64>(half);

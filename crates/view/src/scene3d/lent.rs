@@ -89,7 +89,7 @@ impl Deform {
         });
         let buffers = [
             how.clone(),
-            buffer_of(column),
+            column.buffer.clone(),
             read("rest", bytemuck::cast_slice(&rest)),
             read("faces", bytemuck::cast_slice(&faces)),
             read("around", bytemuck::cast_slice(&around)),
@@ -128,17 +128,6 @@ impl Deform {
             pass.dispatch_workgroups(groups.min(MOST_GROUPS), groups.div_ceil(MOST_GROUPS), 1);
         }
     }
-}
-
-#[cfg(not(target_arch = "wasm32"))]
-fn buffer_of(column: &GpuColumn) -> Buffer {
-    column.buffer.clone()
-}
-
-/// In a page simulations run on the CPU: there are no such columns.
-#[cfg(target_arch = "wasm32")]
-fn buffer_of(column: &GpuColumn) -> Buffer {
-    match column.buffer {}
 }
 
 /// Of each row where its list of faces begins, and where the last one ends; then the lists.
