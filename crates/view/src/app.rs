@@ -167,7 +167,8 @@ impl App {
         self.read_scene();
         self.source.frame();
         self.state = self.source.state();
-        if let Some(editor) = &mut self.editor {
+        let is_behind = self.source.is_behind();
+        if let Some(editor) = self.editor.as_mut().filter(|_| !is_behind) {
             let refusal = self.state.refusal.as_ref().filter(|refusal| refusal.command == "load");
             editor.note_refusal(refusal.map_or(&[], |refusal| &refusal.mistakes));
         }

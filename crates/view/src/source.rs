@@ -207,3 +207,36 @@ impl Source {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_that_is_put_aside_keeps_its_state_and_what_is_sent_waits_for_the_next() {
+        let steps = Steps::new(&Options::default(), &egui::Context::default());
+        let mut window = steps.clone();
+        window.frame();
+        window.send(Command::Speed(2.0));
+        let aside = steps.0.driver.borrow_mut();
+        window.frame();
+        assert!(window.is_behind());
+        assert_eq!(window.state().speed, 1.0);
+        drop(aside);
+        window.frame();
+        assert!(!window.is_behind());
+        assert_eq!(window.state().speed, 2.0);
+    }
+
+    #[test]
+    fn who_takes_the_steps_over_takes_them_alone() {
+        let steps = Steps::new(&Options::default(), &egui::Context::default());
+        let mut window = steps.clone();
+        let page = window.take_over();
+        window.send(Command::Speed(2.0));
+        window.frame();
+        assert!(window.is_behind());
+        page.into_iter().for_each(|page| page.take());
+        assert!(!window.is_behind());
+    }
+}

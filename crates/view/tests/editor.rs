@@ -102,6 +102,19 @@ fn mistakes_stand_in_the_text_while_the_old_scene_goes_on() {
 }
 
 #[test]
+fn what_only_loading_finds_is_told_when_somebody_else_takes_the_steps_later() {
+    let mut page = open(&[("cube.ron", cube())]);
+    let steps = page.state().as_ref().unwrap().steps().unwrap();
+    type_text(&mut page, &cube().replace("\"z0\"", "\"z7\""));
+    press(&mut page, "Load");
+    page.run_steps(5);
+    assert!(state(&page).refusal.is_none() && mistakes(&page).is_empty());
+    steps.take();
+    page.step();
+    assert!(mistakes(&page).iter().any(|line| line.contains("z7")), "{:?}", state(&page).refusal);
+}
+
+#[test]
 fn a_mistake_in_the_list_leads_to_its_place() {
     let mut page = open(&[("cube.ron", cube().replace("density:", "densities:"))]);
     assert!(state(&page).loaded.is_none());

@@ -1,5 +1,6 @@
 // The page in a browser without a window: what it draws by WebGPU and by WebGL, what its editor does, what is dropped
-// on it, and whether steps come to what they come to in a program.
+// on it, whether steps on the CPU and on the GPU come to what they come to in a program, and what becomes of a browser
+// that cannot wait for a GPU.
 //
 //   node page.mjs SITE CHROMIUM OUT NATIVE.csv STEPS SCENE.ron    SITE: the folder of the page; OUT: for pictures
 import { createServer } from "node:http";
@@ -37,8 +38,9 @@ const wrong = [];
 const check = (is, what) => { if (!is) wrong.push(what); console.log(`${is ? "ok" : "WRONG"}: ${what}`); };
 const patience = Number(process.env.SINEW_PATIENCE ?? 240) * 1000;
 
-async function open(browser, hash) {
-  const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+async function open(browser, hash, about = {}) {
+  const page = await browser.newPage({ viewport: { width: about.width ?? 1280, height: about.height ?? 800 } });
+  if (about.first) await page.addInitScript(about.first);
   page.on("console", (message) => {
     if (message.type() === "error") console.log(`  console: ${message.text().slice(0, 400)}`);
   });
@@ -124,11 +126,19 @@ async function dropped(page) {
 }
 
 // Steps in the page against those of a program: not the same bits, for no register of the page multiplies and adds at
-// once.
-async function compared(page) {
-  const scene = await readFile(sceneFile, "utf8");
-  const asked = [scene, Number(steps)];
-  const run = JSON.parse(await page.evaluate(([text, steps]) => window.sinew.runSteps(text, steps), asked));
+// once. Without a viewer, whose pictures take a software device all its time.
+async function compared(browser, backend) {
+  const page = await open(browser, "wait.js");
+  await page.evaluate(async () => {
+    const [sinew, { inTurn }] = [await import("./sinew_web.js"), await import("./wait.js")];
+    const wasm = await sinew.default({ module_or_path: new URL("sinew_web_bg.wasm", location.href) });
+    const makeRun = inTurn(wasm.make_run);
+    window.run = async (...asked) => { sinew.ask_for_run(...asked); await makeRun(); return sinew.answer_of_run(); };
+  });
+  const asked = [await readFile(sceneFile, "utf8"), Number(steps), backend];
+  const run = JSON.parse(await page.evaluate((asked) => window.run(...asked), asked));
+  await page.close();
+  check(run.backend.toLowerCase().startsWith(backend), `${backend}: steps on ${run.backend}`);
   const [head, ...rows] = (await readFile(nodesFile, "utf8")).trim().split("\n").map((line) => line.split(","));
   const column = (name) => head.findIndex((title) => title.trim().split(" ")[0] === name);
   const [places, moves] = [["X", "Y", "Z"].map(column), ["ux", "uy", "uz"].map(column)];
@@ -141,16 +151,45 @@ async function compared(page) {
     moved = Math.max(moved, Math.hypot(...by));
   });
   const micro = (1e6 * run.seconds / run.steps).toFixed(0);
-  console.log(`  ${run.elements} elements, ${run.steps} steps: ${micro} µs a step`);
+  console.log(`  ${backend}: ${run.elements} elements, ${run.steps} steps: ${micro} µs a step`);
   const is = rows.length === body.length && moved > 0 && far < 1e-4 * moved;
-  check(is, `nodes are where a program's are: ${far} m off of ${moved} m`);
+  check(is, `${backend}: nodes are where a program's are: ${far} m off of ${moved} m`);
+}
+
+// Steps on the device that draws, whose pictures show them where they are.
+async function drawnFromGpu(browser) {
+  const hash = "#scene=cube_under_gravity.ron&run&field=von_mises&backend=gpu";
+  const page = await open(browser, hash, { width: 900, height: 500 });
+  const seen = await until(page, "gpu: it runs while it is drawn", (now) => now.step > 3);
+  check((seen.backend ?? "").startsWith("GPU"), `gpu: simulated by ${seen.backend}`);
+  const bytes = await picture(page, "gpu", { x: 640, y: 120, width: 250, height: 300 });
+  check(bytes > 4000, `gpu: a picture of ${bytes} bytes`);
+  await page.close();
+}
+
+// A browser that cannot put WebAssembly aside: a GPU is refused where it is asked for, and else not taken.
+async function withoutWaiting(browser) {
+  const first = () => { delete WebAssembly.Suspending; delete WebAssembly.promising; };
+  for (const [backend, told, is] of [
+    ["gpu", "refused", (now) => /JavaScript Promise Integration/.test(now.refusal ?? "")],
+    ["auto", "the CPU", (now) => now.step > 3 && now.backend.startsWith("CPU")],
+  ]) {
+    const hash = `#scene=cube_under_gravity.ron&run&backend=${backend}`;
+    const page = await open(browser, hash, { first, width: 400, height: 300 });
+    await until(page, `without waiting, ${backend}: ${told}`, is);
+    await page.close();
+  }
 }
 
 try {
   const { browser, page } = await drawn("webgpu", "BrowserWebGpu");
   await edited(page);
   await dropped(page);
-  await compared(page);
+  await page.close();
+  await compared(browser, "cpu");
+  await compared(browser, "gpu");
+  await drawnFromGpu(browser);
+  await withoutWaiting(browser);
   await browser.close();
   const other = await drawn("webgl", "(Gl)");
   await other.browser.close();

@@ -18,8 +18,10 @@ impl AdapterReport {
             DeviceType::Cpu => "software",
             DeviceType::Other => "unknown",
         };
+        // browsers keep to themselves whose it is
+        let name = if info.name.is_empty() { "WebGPU".to_owned() } else { info.name };
         Self {
-            name: info.name,
+            name,
             driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
             interface: format!("{:?}", info.backend),
             software: info.device_type == DeviceType::Cpu,

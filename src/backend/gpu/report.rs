@@ -67,7 +67,12 @@ pub struct AdapterReport {
 
 impl std::fmt::Display for AdapterReport {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} ({}, {}, {})", self.name, self.kind, self.interface, self.driver)
+        write!(f, "{} ({}, {}", self.name, self.kind, self.interface)?;
+        // a browser tells of none
+        if !self.driver.is_empty() {
+            write!(f, ", {}", self.driver)?;
+        }
+        f.write_str(")")
     }
 }
 
