@@ -32,7 +32,7 @@ pub fn system() -> System {
         "`Gravity(...)` under `loads`",
         |world| super::registry::count::<Gravity>(world, "gravity load", "gravity loads"),
     )
-    .for_load("Gravity", |on, signal| Some(Gravity { factors: on.all()?.clone(), signal }))
+    .for_load(|on, signal| Some(Gravity { factors: on.all()?.clone(), signal }))
     .on_nodes(stages)
 }
 

@@ -32,7 +32,7 @@ pub fn system() -> System {
         "`NodalForce(...)` under `loads`",
         |world| super::registry::count::<NodalForce>(world, "nodal force", "nodal forces"),
     )
-    .for_load("NodalForce", |on, signal| Some(NodalForce { on: on.nodes()?.clone(), signal }))
+    .for_load(|on, signal| Some(NodalForce { on: on.nodes()?.clone(), signal }))
     .on_nodes(stages)
 }
 

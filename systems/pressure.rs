@@ -38,7 +38,7 @@ pub fn system() -> System {
         "`Pressure(...)` under `loads`",
         |world| super::registry::count::<Pressure>(world, "pressure", "pressures"),
     )
-    .for_load("Pressure", |on, signal| Some(Pressure { faces: on.faces()?.clone(), signal }))
+    .for_load(|on, signal| Some(Pressure { faces: on.faces()?.clone(), signal }))
     .on_nodes(stages)
 }
 

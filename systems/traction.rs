@@ -35,7 +35,7 @@ pub fn system() -> System {
         "`Traction(...)` under `loads`",
         |world| super::registry::count::<Traction>(world, "traction", "tractions"),
     )
-    .for_load("Traction", |on, signal| Some(Traction { faces: on.faces()?.clone(), signal }))
+    .for_load(|on, signal| Some(Traction { faces: on.faces()?.clone(), signal }))
     .on_nodes(stages)
 }
 
