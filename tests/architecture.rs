@@ -270,6 +270,38 @@ fn every_system_is_a_file_of_its_name_and_a_line_of_the_step() {
     }
 }
 
+/// Columns are declared in several files, each with what it is about: none is forgotten where all are listed, and the
+/// simulation keeps no lists of its own of them.
+#[test]
+fn columns_are_listed_where_they_are_declared_alone() {
+    let name = |line: &str| {
+        let (_, rest) = line.strip_prefix("    ")?.split_once(") = \"")?;
+        rest.contains("\", ").then(|| rest.split('"').next().unwrap().to_owned())
+    };
+    let mut declared: Vec<String> =
+        files(&["src/components"], "rs").values().flat_map(|text| text.lines().filter_map(name)).collect();
+    let mut listed: Vec<String> =
+        sinew::components::all_columns().iter().map(|column| column.name.to_owned()).collect();
+    declared.sort();
+    listed.sort();
+    assert!(declared.len() > 40);
+    assert_eq!(declared, listed);
+    // what stands in the brackets of a constant
+    let is_list = |text: &str| {
+        let constants = text.split("const ").skip(1).filter_map(|rest| rest.split_once("= ["));
+        let mut lists =
+            constants.filter(|(before, _)| !before.contains('{')).filter_map(|(_, list)| list.split(']').next());
+        lists.any(|list| list.contains("::NAME"))
+    };
+    assert!(
+        is_list("const READ: [&str; 2] = [A::NAME, B::NAME];")
+            && !is_list("const N: u8 = 1;\nfn f() {\n    let a = [A::NAME];")
+    );
+    let kept: Vec<String> =
+        files(&["src/simulation"], "rs").into_iter().filter(|(_, text)| is_list(text)).map(|(file, _)| file).collect();
+    assert!(kept.is_empty(), "lists of columns: {kept:?}");
+}
+
 /// Each crate below sinew with its version and features, as a build of some packages has them.
 fn features(edges: &str, packages: &[&str]) -> Vec<String> {
     features_or_reason(edges, packages).unwrap()

@@ -5,7 +5,7 @@ use super::inputs::Tape;
 use super::interval::RunInterval;
 use super::known::Known;
 use super::options::{BackendChoice, Chosen, choose};
-use super::plan::{Over, Pass, Plan, Planned, each_once};
+use super::plan::{Over, Pass, Plan, each_once};
 use super::prepare::{Prepared, add_loads, counts, prepare};
 use super::schedule::Scheduled;
 use super::scheme::{fill_gpu, fit_workgroups, sum_forces, summed};
@@ -293,7 +293,7 @@ fn entries(
         };
         let systems = pass.systems.clone();
         let reads = each_once(plan.systems_of(pass).flat_map(|system| &system.reads).copied());
-        let finds_forces = plan.systems_of(pass).any(Planned::finds_forces);
+        let finds_forces = plan.systems_of(pass).any(|system| system.finds_forces);
         let (time, runs) = (Duration::ZERO, 0);
         entries.push(ScheduledPass { name, phase, finds_forces, systems, job, reads, before_steps, time, runs });
     }
