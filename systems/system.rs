@@ -53,11 +53,14 @@ pub enum OnHost {
 }
 
 impl OnHost {
-    /// The system, by itself in a pass if it is one of nodes.
-    pub fn alone(&self, world: &mut World) -> HostSystem {
+    /// The system of a name, by itself in a pass if it is one of nodes.
+    pub fn alone(&self, name: &str, world: &mut World) -> HostSystem {
         match self {
             OnHost::System(make) | OnHost::Elements(make) => make(),
-            OnHost::Nodes(rows) => node_pass(NodePass::new(vec![*rows]), world),
+            OnHost::Nodes(rows) => {
+                let pass = NodePass::new([(name, *rows)], world);
+                node_pass(pass, world)
+            }
         }
     }
 
@@ -362,10 +365,7 @@ impl System {
 
     /// It is for a load of scenes (`src/scene/schema/load.rs`), which becomes what calls for it; `None` where that acts
     /// on something else.
-    pub(crate) fn for_load<S: NodeSystem + Bundle>(
-        mut self,
-        load: fn(&LoadedRows, usize) -> Option<S>,
-    ) -> Self {
+    pub(crate) fn for_load<S: NodeSystem + Bundle>(mut self, load: fn(&LoadedRows, usize) -> Option<S>) -> Self {
         let put_on: PutLoad = Arc::new(move |on, signal, entity| match load(on, signal) {
             Some(load) => drop(entity.insert(load)),
             None => debug_assert!(false, "{}", missing("what a load acts on")),

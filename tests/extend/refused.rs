@@ -1,8 +1,10 @@
 //! What a program gets wrong about a system of its own is an error that says so, and nothing else.
 
+use sinew::bevy_ecs::query::QueryData;
 use sinew::components::Precision;
 use sinew::prelude::*;
 use sinew::systems::{Before, Cpu, ForceSlopes, NodeColumns, NodeSystem, NodesAtRest, Rows, SimdScalar};
+use std::marker::PhantomData;
 use std::path::Path;
 
 /// What the scene says under `parameters`.
@@ -76,6 +78,62 @@ fn a_system_that_runs_every_no_steps_runs_in_each() {
     simulation.world_mut().insert_resource(Counted(0));
     simulation.advance(3).unwrap();
     assert_eq!(simulation.world().resource::<Counted>().0, 3);
+}
+
+/// Writes loads and reads masses, whatever it declares.
+#[derive(Component, serde::Deserialize)]
+#[serde(crate = "sinew::serde", deny_unknown_fields)]
+struct Push<C: 'static> {
+    /// Force on each node (N).
+    force: f64,
+    #[serde(skip)]
+    declares: PhantomData<fn() -> C>,
+}
+
+impl<C> Clone for Push<C> {
+    fn clone(&self) -> Self {
+        Self { force: self.force, declares: PhantomData }
+    }
+}
+
+impl<C: QueryData + Send + Sync + 'static> NodeSystem for Push<C> {
+    type Columns = C;
+    type Prepared = ();
+
+    fn prepare(&self, _: &Before<'_>) {}
+
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes::NONE
+    }
+
+    fn act<T: SimdScalar>(&self, (): &(), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        for row in 0..nodes.rows() {
+            if nodes.mass()[row] > T::default() {
+                nodes.add_load(row, self.force * DVec3::Z);
+            }
+        }
+    }
+}
+
+fn pushed<C: QueryData + Send + Sync + 'static>() -> Result<(), String> {
+    let system = System::of_nodes::<Push<C>>("hold", Phase::Loads, "pushes").on_each_body::<Push<C>>();
+    let mut simulation = begun(system, r#""hold": (force: 1)"#)?;
+    simulation.advance(2).map_err(|wrong| wrong.to_string())
+}
+
+/// Not in debug builds alone: who shares a pass with whom is planned by what is declared.
+#[test]
+fn columns_that_are_not_declared() {
+    pushed::<(&'static Mass, &'static mut ExternalForce)>().unwrap();
+    let told = |does: &str, column: &str, wanted: &str| {
+        format!(
+            "`hold` {does} `{column}`, and has no `{wanted}{column}` among its `Columns`: what shares a pass with it is \
+             planned by these"
+        )
+    };
+    assert_eq!(pushed::<&'static mut ExternalForce>(), Err(told("reads", "Mass", "&")));
+    assert_eq!(pushed::<&'static Mass>(), Err(told("writes", "ExternalForce", "&mut ")));
+    assert_eq!(pushed::<(&'static Mass, &'static ExternalForce)>(), Err(told("writes", "ExternalForce", "&mut ")));
 }
 
 /// How often it was run.
