@@ -1,6 +1,6 @@
 //! What adding a law, an element or a load inside the tree touches: of each that there is, where its name stands. One
-//! Rust file with its `mod`, one WGSL file and one line of a list are all that may have it; beside them stand here those
-//! few that are about this law or element alone, and why.
+//! Rust file with its `mod`, one WGSL file and one line of a list are all that may have it; beside them stand here
+//! those few that are about this law or element alone, and why.
 
 use super::source::code;
 use sinew::scene::schema::LOADS;

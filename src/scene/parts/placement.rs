@@ -2,8 +2,8 @@
 
 use crate::mesh::{angles_about_axes, rotation_about_axes};
 use crate::scene::schema::{
-    Attachment, Axis, Body, Constraint, Contact, Direction, Free, Load, LoadPartsMut, Material, Part, Probe,
-    Quantity, Removal, Select, Start, Suction, Tool, When,
+    Attachment, Axis, Body, Constraint, Contact, Direction, Free, Load, LoadPartsMut, Material, Part, Probe, Quantity,
+    Removal, Select, Start, Suction, Tool, When,
 };
 use glam::{DMat3, DQuat, DVec3};
 
