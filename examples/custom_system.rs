@@ -48,7 +48,7 @@ impl NodeSystem for Magnet {
         for row in 0..nodes.rows() {
             let toward = place - nodes.place(row);
             let near = (-toward.length_squared() / self.reach.powi(2)).exp();
-            nodes.add_load(row, nodes.mass[row].to_f64() * strength * near * toward.normalize_or_zero());
+            nodes.add_load(row, nodes.mass()[row].to_f64() * strength * near * toward.normalize_or_zero());
         }
     }
 }

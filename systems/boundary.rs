@@ -6,7 +6,7 @@ use super::places_within;
 use super::rows::Rows;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, NodeColumns};
+use crate::backend::cpu::{Asked, Cpu, NodeColumns};
 use crate::backend::kernel::{Fragment, Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
@@ -59,8 +59,10 @@ impl NodeSystem for Prescribed {
     }
 
     fn act<T: SimdScalar>(&self, motion: &[[f64; 4]; 3], _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        nodes.reads(Asked::Displacement);
+        nodes.writes(Asked::Increment);
         let compensation = nodes.compensation.as_ref().map(|[of_u, _]| &**of_u);
-        let own = places_within(&self.rows, nodes.first, nodes.axes.len());
+        let own = places_within(&self.rows, nodes.first, nodes.rows());
         for (&row, arm) in self.rows[own.clone()].iter().zip(&self.arms[own]) {
             let row = row as usize - nodes.first;
             for axis in (0..3).filter(|axis| self.axes >> axis & 1 == 1) {

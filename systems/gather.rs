@@ -4,7 +4,7 @@ use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::system::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, NodeColumns, ROWS_A_TASK};
+use crate::backend::cpu::{Asked, Cpu, NodeColumns, ROWS_A_TASK};
 use crate::backend::kernel::Fragment;
 use crate::backend::node_stage::NodeStage;
 use crate::components::*;
@@ -34,8 +34,11 @@ impl NodeSystem for Corners {
     }
 
     fn act<T: SimdScalar>(&self, (): &(), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        nodes.writes(Asked::Internal);
         sum_at(self, nodes.element_force, nodes.first, nodes.internal);
-        if let Some(external) = nodes.external.as_deref_mut() {
+        if nodes.external.is_some()
+            && let Some(external) = nodes.external_force_mut()
+        {
             external.fill(T::default());
         }
     }

@@ -43,9 +43,9 @@ impl NodeSystem for Grabs {
         let place = |bound: usize| self.held.partition_point(|held| (held.row as usize) < bound);
         for held in &self.held[place(nodes.first)..place(nodes.first + nodes.rows())] {
             let row = held.row as usize - nodes.first;
-            let mass = nodes.mass[row];
+            let mass = nodes.mass()[row];
             if mass > T::default() {
-                let step = glam::DVec3::from_array([0, 1, 2].map(|i| nodes.step[3 * row + i].to_f64()));
+                let step = glam::DVec3::from_array([0, 1, 2].map(|i| nodes.increments()[3 * row + i].to_f64()));
                 nodes.add_load(row, held.force(nodes.displacement(row), step * rate, mass.to_f64()));
             }
         }

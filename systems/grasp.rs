@@ -132,7 +132,7 @@ impl Grasps {
             values[3] = T::default();
             return;
         }
-        if nodes.inertia[row] <= T::default() {
+        if nodes.inertia()[row] <= T::default() {
             return;
         }
         let place = nodes.rest[row] - self.reference + nodes.displacement(row);

@@ -5,7 +5,7 @@ use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::system::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, NodeColumns, loads};
+use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::kernel::{Uniform, uniform};
 use crate::backend::node_stage::NodeStage;
 use crate::components::*;
@@ -32,7 +32,7 @@ pub fn system() -> System {
         "`Gravity(...)` under `loads`",
         |world| super::registry::count::<Gravity>(world, "gravity load", "gravity loads"),
     )
-    .for_load("Gravity", |on, signal| Some(Gravity { factors: on.all()?.clone(), signal }))
+    .for_load(|on, signal| Some(Gravity { factors: on.all()?.clone(), signal }))
     .on_nodes(stages)
 }
 
@@ -50,12 +50,13 @@ impl NodeSystem for Gravity {
     }
 
     fn act<T: SimdScalar>(&self, acceleration: &[f64; 4], cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
-        let Some(external) = loads(&mut nodes.external) else { return };
+        let (first, mass) = (nodes.first, nodes.mass());
+        let Some(external) = nodes.external_force_mut() else { return };
         if self.factors.is_empty() {
-            cpu.dispatch_widest(Pull { mass: nodes.mass, acceleration: acceleration.map(T::from_f64), external });
+            cpu.dispatch_widest(Pull { mass, acceleration: acceleration.map(T::from_f64), external });
             return;
         }
-        let of_rows = nodes.mass.iter().zip(&self.factors[nodes.first..]).zip(external.as_chunks_mut::<3>().0);
+        let of_rows = mass.iter().zip(&self.factors[first..]).zip(external.as_chunks_mut::<3>().0);
         for ((mass, factors), external) in of_rows {
             for i in 0..3 {
                 external[i] += *mass * (T::from_f64(factors[i]) * T::from_f64(acceleration[i]));

@@ -7,10 +7,7 @@
 //! nodal_volume     Displacement, RestShape      -> NodalVolumeChange                      per element, per node
 //! element_forces   Displacement, RestShape, law -> ElementForce                           per element, patch by patch
 //! gather           ElementForce, Corners        -> InternalForce (ExternalForce: zero)    per node, over its patches, in a fixed order
-//! gravity          Mass                         -> ExternalForce                          per node
-//! nodal_force                                   -> ExternalForce                          per loaded node
-//! pressure         Displacement                 -> ExternalForce                          per loaded node
-//! traction                                      -> ExternalForce                          per loaded node
+//! (loads)          Mass or Displacement         -> ExternalForce                          per loaded node: src/scene/schema/load.rs
 //! suction          Displacement                 -> ExternalForce                          per sucked node
 //! suture           SutureForce                  -> ExternalForce                          per sutured node
 //! grab             Displacement                 -> ExternalForce                          per held node
@@ -76,11 +73,7 @@ pub(crate) use gather::sum_corners;
 pub(crate) use glue::find_ties;
 pub(crate) use grab::{bytes_of as grab_bytes, uniform_of as grab_uniform};
 pub(crate) use grasp::{HeldNode, held_in_step, note_held};
-#[doc(hidden)]
-pub use gravity::Gravity;
 pub(crate) use host_forces::SlopesOf;
-#[doc(hidden)]
-pub use nodal_force::NodalForce;
 pub(crate) use nodal_volume::means_of;
 pub(crate) use node_pass::{NodePass, node_pass, shared_pass};
 pub(crate) use node_shares::{give_shares, mark};
@@ -92,8 +85,6 @@ pub use node_views::{Before, ForceSlopes, MiddleOfStep, NodesAtRest};
 #[doc(hidden)]
 pub use observe::{add_guard_columns, guard_kernels};
 pub(crate) use patch_pass::patch_pass;
-#[doc(hidden)]
-pub use pressure::Pressure;
 pub use registry::Registry;
 pub use repeat::Repeat;
 pub use rows::{RowSet, Rows};
@@ -106,10 +97,8 @@ pub(crate) use system::BeforeSteps;
 pub use system::{Because, DescribeKernels, HostSystem, OnDevice, OnHost};
 pub use system::{Outcome, Phase, System};
 pub(crate) use tool_contact::find_tool_springs;
-#[doc(hidden)]
-pub use traction::Traction;
 
-use crate::scene::schema::{OwnSystem, Scene};
+use crate::scene::schema::{OwnSystem, Scene, each_load};
 
 /// Places in `rows`, which ascend, of those among `count` from row `first` on.
 fn places_within(rows: &[u32], first: usize, count: usize) -> std::ops::Range<usize> {
@@ -127,20 +116,31 @@ pub(crate) fn of_scene(scene: &Scene) -> Vec<System> {
     scene.systems.iter().enumerate().map(system).collect()
 }
 
+macro_rules! loads {
+    ($($(#[$about:meta])* $file:ident: $word:ident $parts:tt;)*) => {
+        $(#[doc(hidden)] pub use $file::$word;)*
+
+        /// The systems of loads, with the loads' words in scenes.
+        pub(crate) fn of_loads() -> Vec<(&'static str, System)> {
+            vec![$((stringify!($word), $file::system())),*]
+        }
+    };
+}
+each_load!(loads);
+
 /// The built-in systems, in the order of a step.
 #[doc(hidden)]
 pub fn standard() -> Vec<System> {
-    vec![
+    let loads = of_loads().into_iter().map(|(_, system)| system);
+    let before = vec![
         boundary::system(),
         suction_mouth::system(),
         suture_tension::system(),
         nodal_volume::system(),
         element_forces::system(),
         gather::system(),
-        gravity::system(),
-        nodal_force::system(),
-        pressure::system(),
-        traction::system(),
+    ];
+    let after = vec![
         suction::system(),
         suture::system(),
         grab::system(),
@@ -155,5 +155,6 @@ pub fn standard() -> Vec<System> {
         island_removal::system(),
         element_removal::system(),
         observe::system(),
-    ]
+    ];
+    before.into_iter().chain(loads).chain(after).collect()
 }

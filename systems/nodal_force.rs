@@ -6,7 +6,7 @@ use super::places_within;
 use super::rows::Rows;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, NodeColumns, loads};
+use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::kernel::{Fragment, Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
@@ -32,7 +32,7 @@ pub fn system() -> System {
         "`NodalForce(...)` under `loads`",
         |world| super::registry::count::<NodalForce>(world, "nodal force", "nodal forces"),
     )
-    .for_load("NodalForce", |on, signal| Some(NodalForce { on: on.nodes()?.clone(), signal }))
+    .for_load(|on, signal| Some(NodalForce { on: on.nodes()?.clone(), signal }))
     .on_nodes(stages)
 }
 
@@ -54,11 +54,12 @@ impl NodeSystem for NodalForce {
     }
 
     fn act<T: SimdScalar>(&self, force: &[f64; 4], _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
-        let Some(external) = loads(&mut nodes.external) else { return };
+        let (first, mass) = (nodes.first, nodes.mass());
+        let Some(external) = nodes.external_force_mut() else { return };
         let LoadedNodes { rows, factors } = &*self.on;
-        for place in places_within(rows, nodes.first, nodes.mass.len()) {
-            let row = rows[place] as usize - nodes.first;
-            if nodes.mass[row] > T::default() {
+        for place in places_within(rows, first, mass.len()) {
+            let row = rows[place] as usize - first;
+            if mass[row] > T::default() {
                 let factors = factors.get(place).unwrap_or(&[1.0; 3]);
                 for i in 0..3 {
                     external[3 * row + i] += T::from_f64(factors[i]) * T::from_f64(force[i]);

@@ -4,7 +4,7 @@
 use super::node_system::{BoundSystem, BoundSystems, Callers, NodeRows, OfRun};
 use super::node_views::Before;
 use super::system::HostSystem;
-use crate::backend::cpu::{Cpu, NodeColumns, OwnRows, ROWS_A_TASK, Touches};
+use crate::backend::cpu::{Cpu, Declared, NodeColumns, OwnRows, ROWS_A_TASK, Touches, Undeclared};
 use crate::backend::step::step_number;
 use crate::components::*;
 use crate::error::Error;
@@ -48,6 +48,7 @@ impl BodyColumnsItem<'_, '_> {
         &'a mut self,
         element_force: &'a [T],
         non_finite: &'a AtomicU32,
+        undeclared: &'a Undeclared,
     ) -> NodeColumns<'a, T> {
         let nodes = self.axes.len();
         NodeColumns {
@@ -55,6 +56,8 @@ impl BodyColumnsItem<'_, '_> {
             rest: &self.rest.0,
             element_force,
             non_finite,
+            undeclared,
+            declared: Declared::default(),
             mass: self.mass.slice(),
             inertia: self.inertial.map_or(self.mass.slice(), |inertial| inertial.slice()),
             internal: self.internal.slice_mut(),
@@ -119,12 +122,36 @@ impl InStep<'_> {
 #[derive(Clone, Default)]
 pub(crate) struct NodePass {
     systems: Vec<NodeRows>,
+    /// What they have declared, each with its place among all that the pass goes through, and their names by places.
+    declared: Vec<Declared>,
+    names: Vec<String>,
 }
 
 impl NodePass {
-    /// Of systems that follow one another in a step.
-    pub(crate) fn new(systems: Vec<NodeRows>) -> Self {
-        Self { systems }
+    /// Of systems that follow one another in a step, by their names.
+    pub(crate) fn new<'a>(systems: impl IntoIterator<Item = (&'a str, NodeRows)>, world: &mut World) -> Self {
+        let mut pass = Self::default();
+        for (place, (name, system)) in systems.into_iter().enumerate() {
+            pass.declared.push(system.declared(world).at(place));
+            pass.names.push(name.to_owned());
+            pass.systems.push(system);
+        }
+        pass
+    }
+
+    /// The same where others go before it: notes name systems of both.
+    pub(super) fn after(mut self, other: &Self) -> Self {
+        self.names.splice(..0, other.names.iter().cloned());
+        let first = other.systems.len();
+        (first..).zip(&mut self.declared).for_each(|(place, declared)| *declared = declared.at(place));
+        self
+    }
+
+    /// Ends a run in which a system asked for what it has not declared.
+    pub(super) fn refuse(&self, undeclared: &Undeclared) -> Result<(), Error> {
+        let Some((place, told)) = undeclared.told() else { return Ok(()) };
+        let name = self.names.get(place).map_or("a system", String::as_str);
+        Err(Error::Options(format!("`{name}` {told}: what shares a pass with it is planned by these")))
     }
 
     /// Whether there are none.
@@ -159,10 +186,11 @@ impl NodePass {
             mass: body.mass,
             chosen: body.chosen.map_or(&[], |chosen| chosen),
             bit: 0,
+            declared: Declared::default(),
         };
         let mut all = BoundSystems::new();
-        for system in &self.systems {
-            system.bind(callers, body.body, &before, arena, &mut all);
+        for (system, &declared) in self.systems.iter().zip(&self.declared) {
+            system.bind(callers, body.body, &Before { declared, ..before }, arena, &mut all);
         }
         all
     }
@@ -206,18 +234,22 @@ fn pass_over(pass: NodePass, first: fn(Option<&Corners>) -> usize, world: &mut W
     let state = parameters.build_state(world);
     let mut system =
         state.build_system(move |callers: Callers, step: InStep, mut bodies: Bodies| -> Result<(), Error> {
-            let (cpu, observed) = (&*step.cpu, step.observes(&pass));
+            let (cpu, observed, undeclared) = (&*step.cpu, step.observes(&pass), Undeclared::default());
             cpu.for_each(bodies.iter_mut(), |(mut body, force, corners)| {
                 cpu.with_arena(|arena| {
                     let systems = pass.bind(&callers, &step, &body, arena);
                     let first = first(corners);
                     match body.u.precision() {
-                        Precision::F32 => move_from::<f32>(first, (&step, observed), &mut body, force, &systems),
-                        Precision::F64 => move_from::<f64>(first, (&step, observed), &mut body, force, &systems),
+                        Precision::F32 => {
+                            move_from::<f32>(first, (&step, observed), &mut body, force, &systems, &undeclared)
+                        }
+                        Precision::F64 => {
+                            move_from::<f64>(first, (&step, observed), &mut body, force, &systems, &undeclared)
+                        }
                     }
                 });
             });
-            Ok(())
+            pass.refuse(&undeclared)
         });
     system.initialize(world);
     Box::new(system)
@@ -229,9 +261,10 @@ fn move_from<T: OfRun>(
     body: &mut BodyColumnsItem<'_, '_>,
     force: Option<&ElementForce>,
     systems: &[BoundSystem<'_>],
+    undeclared: &Undeclared,
 ) {
     let non_finite = AtomicU32::new(u32::MAX);
-    let mut columns = body.columns::<T>(force.map_or(&[], |force| force.slice()), &non_finite);
+    let mut columns = body.columns::<T>(force.map_or(&[], |force| force.slice()), &non_finite, undeclared);
     if first > 0 {
         columns.take(first);
     }

@@ -6,7 +6,7 @@ use super::node_slopes::NodeSlopes;
 use super::node_views::{Before, ForceSlopes, MiddleOfStep, NodesAtRest};
 use super::rows::{RowSet, Rows, row_set};
 use super::system::HostSystem;
-use crate::backend::cpu::{Cpu, NodeColumns, NodeShare};
+use crate::backend::cpu::{Cpu, Declared, NodeColumns, NodeShare};
 use crate::components::*;
 use crate::math::SimdScalar;
 use bevy_ecs::prelude::*;
@@ -23,7 +23,8 @@ use std::mem::needs_drop;
 /// Neighbours of a step share a pass: a task takes some rows through all of them, one after the other. So a system sees
 /// no rows but its own there; what it needs of others it finds out beforehand, in [`prepare`](Self::prepare).
 pub trait NodeSystem: Component {
-    /// The node columns that it reads (`&Mass`) and writes (`&mut ExternalForce`), as a bevy query names them.
+    /// The node columns that it reads (`&Mass`) and writes (`&mut ExternalForce`), as a bevy query names them. Whether
+    /// it shares a pass with its neighbours follows from these; asking [`NodeColumns`] for any other is an error.
     type Columns: QueryData + 'static;
     /// What a step needs beside the component.
     type Prepared: Send + Sync;
@@ -109,15 +110,16 @@ struct Bound<'a, S: NodeSystem> {
     system: &'a S,
     prepared: S::Prepared,
     share: NodeShare,
+    declared: Declared,
 }
 
 impl<S: NodeSystem> OnRows for Bound<'_, S> {
     fn single(&self, cpu: &Cpu, nodes: &mut NodeColumns<'_, f32>) {
-        nodes.turn_to(self.share);
+        nodes.turn_to(self.share, self.declared);
         self.system.act(&self.prepared, cpu, nodes);
     }
     fn double(&self, cpu: &Cpu, nodes: &mut NodeColumns<'_, f64>) {
-        nodes.turn_to(self.share);
+        nodes.turn_to(self.share, self.declared);
         self.system.act(&self.prepared, cpu, nodes);
     }
     fn sums_forces(&self) -> bool {
@@ -289,6 +291,12 @@ impl NodeRows {
     pub(crate) fn touches(&self) -> HostSystem {
         (self.touches)()
     }
+
+    /// What it may ask of a body's columns.
+    pub(super) fn declared(&self, world: &mut World) -> Declared {
+        let access = self.touches().initialize(world);
+        Declared::of(&access, world)
+    }
 }
 
 fn bind<'a, S: NodeSystem>(
@@ -305,7 +313,7 @@ fn bind<'a, S: NodeSystem>(
         if of == body && caller.get::<OfSystem>().copied() == of_system {
             let share = caller.get::<ShareOf<S>>().map(|share| share.share).unwrap_or_default();
             let prepared = system.prepare(&Before { bit: share.bit, ..*before });
-            let bound = Bound { system, prepared, share };
+            let bound = Bound { system, prepared, share, declared: before.declared };
             all.push(match needs_drop::<S::Prepared>() {
                 true => BoundSystem::Own(Box::new(bound)),
                 false => BoundSystem::Lent(arena.alloc(bound)),

@@ -1,6 +1,6 @@
 //! What node systems see of a body beside the rows that they work on: before a step, at rest, in the middle of a step.
 
-use crate::backend::cpu::NodeShare;
+use crate::backend::cpu::{Declared, NodeShare};
 use crate::components::*;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -21,6 +21,7 @@ pub struct Before<'a> {
     pub mass: &'a Mass,
     pub(super) chosen: &'a [u32],
     pub(super) bit: u32,
+    pub(super) declared: Declared,
 }
 
 impl<'a> Before<'a> {

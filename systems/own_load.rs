@@ -8,7 +8,7 @@ use super::places_within;
 use super::rows::Rows;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, NodeColumns, loads};
+use crate::backend::cpu::{Asked, Cpu, NodeColumns};
 use crate::backend::kernel::{Fragment, Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::backend::user_law::callable_fragments_of_load;
@@ -101,7 +101,11 @@ impl NodeSystem for OwnLoad {
 
     fn act<T: SimdScalar>(&self, step: &InStep, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
         let (first, count) = (nodes.first, nodes.rows());
-        let Some(external) = loads(&mut nodes.external) else { return };
+        nodes.reads(Asked::Displacement);
+        nodes.reads(Asked::Increment);
+        nodes.writes(Asked::External);
+        let mass = nodes.mass();
+        let Some(external) = nodes.external.as_deref_mut() else { return };
         cpu.dispatch(Push {
             program: &self.text.program,
             in_step: step,
@@ -111,7 +115,7 @@ impl NodeSystem for OwnLoad {
             rest: nodes.rest,
             u: &*nodes.u,
             step: &*nodes.step,
-            mass: nodes.mass,
+            mass,
             external,
         });
     }

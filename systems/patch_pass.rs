@@ -5,7 +5,7 @@ use super::element_forces::{BlockParts, BlockPartsItem, Precise};
 use super::node_pass::{BodyColumns, BodyColumnsItem, InStep, NodePass, act, act_after_gather, move_rows};
 use super::node_system::{BoundSystem, Callers, OfRun};
 use super::system::HostSystem;
-use crate::backend::cpu::{Cpu, NodeColumns, PatchInterior, ROWS_A_TASK};
+use crate::backend::cpu::{Cpu, NodeColumns, PatchInterior, ROWS_A_TASK, Undeclared};
 use crate::components::*;
 use crate::error::Error;
 use bevy_ecs::prelude::*;
@@ -18,6 +18,7 @@ type Bodies<'w, 's> = Query<'w, 's, (BodyColumns, &'static Corners, &'static mut
 /// `element_forces` and a pass over the nodes as one. Nodes inside patches go through the systems of another pass, too,
 /// which the others come to later. Bodies do not wait for each other: threads take patches of any.
 pub(crate) fn patch_pass(pass: NodePass, ahead: NodePass, world: &mut World) -> HostSystem {
+    let ahead = ahead.after(&pass);
     let parameters = (
         QueryParamBuilder::new(|query| pass.callers(&ahead, query)),
         ParamBuilder::of::<InStep>(),
@@ -27,7 +28,7 @@ pub(crate) fn patch_pass(pass: NodePass, ahead: NodePass, world: &mut World) -> 
     let state = parameters.build_state(world);
     let mut system = state.build_system(
         move |callers: Callers, step: InStep, mut blocks: Query<BlockParts>, mut bodies: Bodies| -> Result<(), Error> {
-            let cpu = &*step.cpu;
+            let (cpu, undeclared) = (&*step.cpu, Undeclared::default());
             cpu.with_arena(|arena| {
                 // in the order of their bodies, and in a body of their forces
                 let blocks = all(arena, blocks.iter().count(), blocks.iter_mut());
@@ -52,6 +53,7 @@ pub(crate) fn patch_pass(pass: NodePass, ahead: NodePass, world: &mut World) -> 
                             first_interface: corners.first_interface,
                             systems: &pass.bind(&callers, &step, body, arena),
                             ahead: &ahead.bind(&callers, &step, body, arena),
+                            undeclared: &undeclared,
                         };
                         match body.u.precision() {
                             Precision::F32 => of_body.take::<f32>(body, force, blocks),
@@ -60,7 +62,7 @@ pub(crate) fn patch_pass(pass: NodePass, ahead: NodePass, world: &mut World) -> 
                     });
                 });
             });
-            Ok(())
+            ahead.refuse(&undeclared)
         },
     );
     system.initialize(world);
@@ -80,6 +82,7 @@ struct StepOfBody<'a> {
     systems: &'a [BoundSystem<'a>],
     /// What is done to those inside a patch afterwards, and to others later.
     ahead: &'a [BoundSystem<'a>],
+    undeclared: &'a Undeclared,
 }
 
 impl StepOfBody<'_> {
@@ -91,7 +94,7 @@ impl StepOfBody<'_> {
     ) {
         let &Self { cpu, arena, clock, systems, ahead, .. } = self;
         let non_finite = AtomicU32::new(u32::MAX);
-        let mut shared = body.columns::<T>(&[], &non_finite);
+        let mut shared = body.columns::<T>(&[], &non_finite, self.undeclared);
         let interior = arena.alloc_slice_fill_with(blocks.len(), |block| {
             let patches = blocks[block].interior();
             arena.alloc_slice_fill_with(patches.len(), |patch| shared.take(patches[patch] as usize))
@@ -115,7 +118,7 @@ impl StepOfBody<'_> {
             block.note_inverted(patches, &body.u, clock);
         }
         // nodes of patches in which elements were inverted are where they were
-        let mut shared = body.columns::<T>(force.slice(), &non_finite);
+        let mut shared = body.columns::<T>(force.slice(), &non_finite, self.undeclared);
         let mut left = Vec::new();
         for (block, found) in blocks.iter().zip(&found) {
             for (patch, &rows) in block.interior().iter().enumerate() {

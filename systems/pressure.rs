@@ -6,7 +6,7 @@ use super::places_within;
 use super::rows::Rows;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, NodeColumns, loads};
+use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::face_kernel::{FaceLoad, face_loads};
 use crate::backend::kernel::{Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
@@ -38,7 +38,7 @@ pub fn system() -> System {
         "`Pressure(...)` under `loads`",
         |world| super::registry::count::<Pressure>(world, "pressure", "pressures"),
     )
-    .for_load("Pressure", |on, signal| Some(Pressure { faces: on.faces()?.clone(), signal }))
+    .for_load(|on, signal| Some(Pressure { faces: on.faces()?.clone(), signal }))
     .on_nodes(stages)
 }
 
@@ -72,7 +72,7 @@ impl NodeSystem for Pressure {
 /// Adds −p times the areas that fall to some nodes (m²) to the loads on them.
 pub(super) fn push<T: SimdScalar>(faces: &FaceCorners, pressure: f64, nodes: &mut NodeColumns<'_, T>) {
     let first = nodes.first;
-    let Some(external) = loads(&mut nodes.external) else { return };
+    let Some(external) = nodes.external_force_mut() else { return };
     let (areas, pressure) = (faces.deformed.read(), T::from_f64(pressure));
     let areas = areas.slice::<T>();
     for i in places_within(&faces.rows, first, external.len() / 3) {

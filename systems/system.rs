@@ -53,11 +53,14 @@ pub enum OnHost {
 }
 
 impl OnHost {
-    /// The system, by itself in a pass if it is one of nodes.
-    pub fn alone(&self, world: &mut World) -> HostSystem {
+    /// The system of a name, by itself in a pass if it is one of nodes.
+    pub fn alone(&self, name: &str, world: &mut World) -> HostSystem {
         match self {
             OnHost::System(make) | OnHost::Elements(make) => make(),
-            OnHost::Nodes(rows) => node_pass(NodePass::new(vec![*rows]), world),
+            OnHost::Nodes(rows) => {
+                let pass = NodePass::new([(name, *rows)], world);
+                node_pass(pass, world)
+            }
         }
     }
 
@@ -143,19 +146,12 @@ pub struct System {
     pub(crate) energy: Option<HeldEnergy>,
     /// How its state gets into snapshots and back.
     pub(crate) state: Option<StateAccess>,
-    /// The load of scenes that it is for.
-    pub(crate) load: Option<LoadOfScenes>,
+    /// What has a load of a scene call for it, where it is for one.
+    pub(crate) load: Option<PutLoad>,
 }
 
-/// A word of loads in scenes, and what puts on an entity, with what the load acts on and its signal, what calls for the
-/// system.
-#[derive(Clone)]
-pub(crate) struct LoadOfScenes {
-    pub word: &'static str,
-    pub put_on: PutLoad,
-}
-
-type PutLoad = Arc<dyn Fn(&LoadedRows, usize, &mut EntityWorldMut<'_>) + Send + Sync>;
+/// What puts on an entity, with what a load acts on and its signal, what calls for the system.
+pub(crate) type PutLoad = Arc<dyn Fn(&LoadedRows, usize, &mut EntityWorldMut<'_>) + Send + Sync>;
 
 /// Why a world needs a system; `None` when it does not.
 pub type Because = Arc<dyn Fn(&mut World) -> Option<String> + Send + Sync>;
@@ -367,17 +363,14 @@ impl System {
         self
     }
 
-    /// It is for loads of a word in scenes, which become what calls for it; `None` where they act on something else.
-    pub(crate) fn for_load<S: NodeSystem + Bundle>(
-        mut self,
-        word: &'static str,
-        load: fn(&LoadedRows, usize) -> Option<S>,
-    ) -> Self {
+    /// It is for a load of scenes (`src/scene/schema/load.rs`), which becomes what calls for it; `None` where that acts
+    /// on something else.
+    pub(crate) fn for_load<S: NodeSystem + Bundle>(mut self, load: fn(&LoadedRows, usize) -> Option<S>) -> Self {
         let put_on: PutLoad = Arc::new(move |on, signal, entity| match load(on, signal) {
             Some(load) => drop(entity.insert(load)),
             None => debug_assert!(false, "{}", missing("what a load acts on")),
         });
-        self.load = Some(LoadOfScenes { word, put_on });
+        self.load = Some(put_on);
         self
     }
 

@@ -156,7 +156,7 @@ impl ToolContacts {
             stuck |= u32::from(of_tool[3] == T::from_f64(STICKS)) << tool;
             of_tool[..4].fill(T::default());
         }
-        if nodes.inertia[row] <= T::default() || near == 0 {
+        if nodes.inertia()[row] <= T::default() || near == 0 {
             return;
         }
         let Foreseen { before, step: predicted, free, to_force } = nodes.foresee(&step.coefficients, row);

@@ -7,7 +7,7 @@ use super::places_within;
 use super::rows::Rows;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, NodeColumns, loads};
+use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::face_kernel::{FaceLoad, face_loads};
 use crate::backend::kernel::{Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
@@ -35,7 +35,7 @@ pub fn system() -> System {
         "`Traction(...)` under `loads`",
         |world| super::registry::count::<Traction>(world, "traction", "tractions"),
     )
-    .for_load("Traction", |on, signal| Some(Traction { faces: on.faces()?.clone(), signal }))
+    .for_load(|on, signal| Some(Traction { faces: on.faces()?.clone(), signal }))
     .on_nodes(stages)
 }
 
@@ -58,7 +58,7 @@ impl NodeSystem for Traction {
 
     fn act<T: SimdScalar>(&self, traction: &[f64; 4], _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
         let (faces, first) = (&self.faces, nodes.first);
-        let Some(external) = loads(&mut nodes.external) else { return };
+        let Some(external) = nodes.external_force_mut() else { return };
         let (traction, alive) = ([0, 1, 2].map(|i| T::from_f64(traction[i])), faces.alive.read());
         for i in places_within(&faces.rows, first, external.len() / 3) {
             let mut area = T::default();

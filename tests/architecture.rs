@@ -229,7 +229,11 @@ fn every_system_is_a_file_of_its_name_and_a_line_of_the_step() {
         .filter(|line| !line.starts_with(' '))
         .filter_map(|line| line.split_whitespace().next())
         .collect();
-    assert_eq!(listed, names, "the step's list at the top of systems/mod.rs");
+    // loads are listed where scenes have their words
+    let loads: Vec<&str> = sinew::scene::schema::LOADS.iter().map(|(file, ..)| *file).collect();
+    let place = listed.iter().position(|name| *name == "(loads)").unwrap();
+    let whole = [&listed[..place], &loads, &listed[place + 1..]].concat();
+    assert_eq!(whole, names, "the step's list at the top of systems/mod.rs, with that of src/scene/schema/load.rs");
     let stems: Vec<String> = files(&["systems"], "rs")
         .into_keys()
         .map(|file| file.trim_start_matches("systems/").trim_end_matches(".rs").to_string())
@@ -264,6 +268,38 @@ fn every_system_is_a_file_of_its_name_and_a_line_of_the_step() {
         let shader = root().join(format!("shaders/{name}.wgsl"));
         assert_eq!(on_a_gpu, shader.exists(), "whether the system {name} has kernels, and a file shaders/{name}.wgsl");
     }
+}
+
+/// Columns are declared in several files, each with what it is about: none is forgotten where all are listed, and the
+/// simulation keeps no lists of its own of them.
+#[test]
+fn columns_are_listed_where_they_are_declared_alone() {
+    let name = |line: &str| {
+        let (_, rest) = line.strip_prefix("    ")?.split_once(") = \"")?;
+        rest.contains("\", ").then(|| rest.split('"').next().unwrap().to_owned())
+    };
+    let mut declared: Vec<String> =
+        files(&["src/components"], "rs").values().flat_map(|text| text.lines().filter_map(name)).collect();
+    let mut listed: Vec<String> =
+        sinew::components::all_columns().iter().map(|column| column.name.to_owned()).collect();
+    declared.sort();
+    listed.sort();
+    assert!(declared.len() > 40);
+    assert_eq!(declared, listed);
+    // what stands in the brackets of a constant
+    let is_list = |text: &str| {
+        let constants = text.split("const ").skip(1).filter_map(|rest| rest.split_once("= ["));
+        let mut lists =
+            constants.filter(|(before, _)| !before.contains('{')).filter_map(|(_, list)| list.split(']').next());
+        lists.any(|list| list.contains("::NAME"))
+    };
+    assert!(
+        is_list("const READ: [&str; 2] = [A::NAME, B::NAME];")
+            && !is_list("const N: u8 = 1;\nfn f() {\n    let a = [A::NAME];")
+    );
+    let kept: Vec<String> =
+        files(&["src/simulation"], "rs").into_iter().filter(|(_, text)| is_list(text)).map(|(file, _)| file).collect();
+    assert!(kept.is_empty(), "lists of columns: {kept:?}");
 }
 
 /// Each crate below sinew with its version and features, as a build of some packages has them.
@@ -328,7 +364,9 @@ fn what_embeds_sinew_uses_the_crates_of_a_build() {
 fn the_package_is_small_and_whole() {
     let place = tempfile::tempdir().unwrap();
     let package = |more: &[&str]| {
-        let arguments = ["package", "--package", "sinew", "--offline", "--allow-dirty", "--quiet"];
+        // who depends on a library does not read its lock file
+        let arguments =
+            ["package", "--package", "sinew", "--exclude-lockfile", "--offline", "--allow-dirty", "--quiet"];
         let mut cargo = std::process::Command::new(env!("CARGO"));
         let output = cargo.args(arguments).args(more).current_dir(root()).output().unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

@@ -30,7 +30,8 @@ fn words_of_the_schema() -> Vec<&'static str> {
 
 #[test]
 fn every_field_and_variant_is_in_the_reference() {
-    let words = words_of_the_schema();
+    let mut words = words_of_the_schema();
+    words.extend(sinew::scene::schema::LOADS.iter().map(|(_, word, _)| *word));
     // a word that only an example shows is not explained
     let tables: String = REFERENCE.split("```").step_by(2).collect();
     assert!(words.len() > 120, "the schema was read as {} words: {words:?}", words.len());
@@ -44,6 +45,18 @@ fn every_field_and_variant_is_in_the_reference() {
                 && (before == Some('`') || after.starts_with([':', '(']))
         });
         assert!(named, "docs/scene.md does not name `{word}`");
+    }
+}
+
+/// Loads are made of a list: each has a row, with all that it must have.
+#[test]
+fn every_load_has_its_row_in_the_reference() {
+    for (_, word, fields) in sinew::scene::schema::LOADS {
+        let row = REFERENCE.lines().find(|line| line.starts_with(&format!("| `{word}` |")));
+        let row = row.unwrap_or_else(|| panic!("docs/scene.md has no row for the load `{word}`"));
+        for (field, _) in *fields {
+            assert!(row.contains(&format!("`{field}`")), "{field} is not in {row}");
+        }
     }
 }
 

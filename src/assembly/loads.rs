@@ -12,16 +12,17 @@ use std::sync::Arc;
 
 /// Spawns all loads. Those of no weight are looked at like the others, and pruned: they cost nothing.
 pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
-    let systems = crate::systems::standard();
+    let systems = crate::systems::of_loads();
     for (number, load) in assembly.scene.scene.loads.iter().enumerate() {
         let LoadParts { word, name, body, on, .. } = load.parts();
         let Some((bodies, on, share)) = acted_on(assembly, body, on, number, diagnostics) else { continue };
-        let system = systems.iter().filter_map(|system| system.load.as_ref()).find(|load| load.word == word);
-        let (true, Some(system)) = (has_weight(load), system) else { continue };
+        let system = systems.iter().find(|(of, _)| *of == word).and_then(|(_, system)| system.load.as_ref());
+        debug_assert!(system.is_some(), "the system of {word} is for no load");
+        let (true, Some(put_on)) = (has_weight(load), system) else { continue };
         let signal = world.resource_mut::<Signals>().add_load(number, load, share);
         for body in bodies {
             let mut entity = world.spawn(OfBody(body));
-            (system.put_on)(&on, signal, &mut entity);
+            put_on(&on, signal, &mut entity);
             entity.insert(SceneLoad { name, signal, on: on.clone() });
         }
     }

@@ -354,7 +354,7 @@ impl BlockKernels {
 }
 
 macro_rules! element_shaders {
-    ($dollar:tt $($(#[$about:meta])* $kind:ident: $cell:ident, $shader:literal;)*) => {
+    ($dollar:tt $($(#[$about:meta])* $file:ident: $kind:ident of $cell:ident, $shader:literal;)*) => {
         /// The WGSL of an element type.
         pub(super) fn element_shader(kind: ElementKind) -> Fragment {
             match kind {

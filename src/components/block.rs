@@ -44,40 +44,40 @@ pub enum FamilyDirection<T> {
 
 columns! {
     /// Rows of the body's node columns, by corner.
-    Connectivity(Vec<u32>) = "connectivity", Structure, Elements;
+    Connectivity(Vec<u32>) = "connectivity", Structure of Mesh, Elements;
     /// What the element type knows of the rest shape: see [`Element`](crate::elements::Element).
-    RestShape(Reals) = "rest_shape", Given, Elements;
+    RestShape(Reals) = "rest_shape", Given of Shape, Elements;
     /// Unit vectors along the fibres at rest, of the families where they differ from element to element.
-    FibreDirection(Reals) = "fibre_direction", Given, Elements;
+    FibreDirection(Reals) = "fibre_direction", Given of Mesh, Elements;
     /// Viscous history q: six numbers a point and Prony term, then one a term of the pressure.
-    ViscousMemory(Reals) = "viscous_memory", State, Elements;
+    ViscousMemory(Reals) = "viscous_memory", State of Memory, Elements;
     /// 1 until the element is removed, then 0. Exists when elements can be removed.
-    Alive(Vec<u32>) = "alive", State, Elements;
+    Alive(Vec<u32>) = "alive", State of Removal, Elements;
     /// The step before which the element goes at the latest; `u32::MAX`: never. Exists with [`Alive`].
-    RemovalStep(Vec<u32>) = "removal_step", State, Elements;
+    RemovalStep(Vec<u32>) = "removal_step", State of Removal, Elements;
     /// Elastic, hourglass and kinetic energy (J) that each element held when it was removed. Exists with [`Alive`].
-    RemovedEnergy(Reals) = "removed_energy", State, Elements;
+    RemovedEnergy(Reals) = "removed_energy", State of Account, Elements;
     /// The part of [`RemovedEnergy`] that is kinetic along constrained axes (J): what constraints had given the mass
     /// that went, and is their work still. Exists with [`Alive`].
-    RemovedWork(Reals) = "removed_work", State, Elements, in "removed_motion_books";
+    RemovedWork(Reals) = "removed_work", State of Account, Elements, in "removed_motion_books";
     /// Momentum (kg m/s) that each element had when it was removed, three numbers each. Exists with [`Alive`].
-    RemovedMomentum(Reals) = "removed_momentum", State, Elements, in "removed_motion_books";
+    RemovedMomentum(Reals) = "removed_momentum", State of Account, Elements, in "removed_motion_books";
     /// Volume at rest (m³) of each element that is there, and that times θ, by which its law measures the change of
     /// volume. Exists with [`NodalVolumeChange`].
-    ElementVolume(Reals) = "element_volume", Scratch, Elements;
+    ElementVolume(Reals) = "element_volume", Scratch of Mean, Elements;
     /// θ of each node of the body: the mean over the block's elements around it, by rest volume. Exists for elements
     /// with averaged nodal pressure.
-    NodalVolumeChange(Reals) = "nodal_volume_change", Scratch, Nodes(1);
+    NodalVolumeChange(Reals) = "nodal_volume_change", Scratch of Mean, Nodes(1);
     /// What each 64 elements come to, four words each: bits of the elastic and the hourglass energy (J) and of the
     /// smallest J, and its row. For the guards on a GPU.
-    ElementSums(Vec<u32>) = "element_sums", Scratch, Other;
+    ElementSums(Vec<u32>) = "element_sums", Scratch of Guard, Other;
     /// Two numbers: the lowest row of an element found with J < 0, by the kernel itself in every step, and the step in
     /// which it was: the first in which there was one; `u32::MAX`: none. Elements that are removed for it
     /// ([`OnInversion`]) are not noted here.
-    FirstInverted(Vec<u32>) = "first_inverted", State, Other;
+    FirstInverted(Vec<u32>) = "first_inverted", State of Inversion, Other;
     /// Mass that was added to each element so that the step may be as large as it is (kg), in f64 whatever the run's
     /// precision. Exists where the scene has mass scaled.
-    AddedMass(Vec<f64>) = "added_mass", State, Elements;
+    AddedMass(Vec<f64>) = "added_mass", State of Mass, Elements;
 }
 
 /// Groups of elements of each of a block's patches but the last.

@@ -1,6 +1,7 @@
 //! Columns of numbers in the precision that a run has.
 
-use super::column_layout::{Increments, Rows};
+pub use super::column_bytes::AsBytes;
+use super::column_layout::{Increments, Rows, Subject};
 use crate::math::Scalar;
 use bevy_ecs::component::{ComponentId, Mutable};
 use bevy_ecs::prelude::*;
@@ -35,6 +36,7 @@ macro_rules! either {
         }
     };
 }
+pub(super) use either;
 
 impl Reals {
     /// `length` zeros.
@@ -179,6 +181,8 @@ pub trait Column: Component<Mutability = Mutable> {
     const NAME: &'static str;
     /// What it is to the state.
     const ROLE: Role;
+    /// What it is about.
+    const SUBJECT: Subject;
     /// The buffer on a device in which it lies: of its own name, or one that an entity's columns share, one after the
     /// other as they are declared; kernels may have few buffers.
     const BUFFER: &'static str;
@@ -203,6 +207,8 @@ pub struct ColumnAccess {
     pub name: &'static str,
     /// What it is to the state.
     pub role: Role,
+    /// What it is about.
+    pub subject: Subject,
     /// The buffer on a device in which it lies.
     pub buffer: &'static str,
     /// What its numbers are in shaders.
@@ -225,6 +231,7 @@ impl ColumnAccess {
         Self {
             name: C::NAME,
             role: C::ROLE,
+            subject: C::SUBJECT,
             buffer: C::BUFFER,
             word: C::WORD,
             bytes: |world, entity| world.get::<C>(entity).map(|column| column.bytes()),
@@ -255,6 +262,11 @@ pub fn place_in_buffer<C: Column>(entity: Entity, world: &World) -> usize {
     before.filter_map(|column| (column.bytes)(world, entity)).map(<[u8]>::len).sum::<usize>() / 4
 }
 
+/// Names of those columns of which something holds.
+pub fn names_of(which: impl Fn(&ColumnAccess) -> bool) -> Vec<&'static str> {
+    all_columns().into_iter().filter(which).map(|column| column.name).collect()
+}
+
 /// Every kind of column there is, as the modules declare them.
 pub fn all_columns() -> Vec<ColumnAccess> {
     let of_tools = [super::tool::accesses(), super::tool_removal::accesses(), super::suction::accesses()].concat();
@@ -262,8 +274,9 @@ pub fn all_columns() -> Vec<ColumnAccess> {
     [super::nodes::accesses(), super::block::accesses(), super::contact::accesses(), of_tools, attached].concat()
 }
 
-/// Declares components that are columns, each with its name, its [`Role`], what its [`Rows`] belong to and, where they
-/// are not none and its own, its [`Increments`] and its buffer; and a function `accesses` that lists them.
+/// Declares components that are columns, each with its name, its [`Role`] and [`Subject`], what its [`Rows`] belong to
+/// and, where they are not none and its own, its [`Increments`] and its buffer; and a function `accesses` that lists
+/// them.
 macro_rules! columns {
     (@buffer $word:literal) => { $word };
     (@buffer $word:literal $buffer:literal) => { $buffer };
@@ -274,7 +287,7 @@ macro_rules! columns {
     (@rows $rows:ident $numbers:expr) => { $crate::components::Rows::$rows($numbers) };
     ($(
         $(#[$doc:meta])*
-        $name:ident($type:ty) = $word:literal, $role:ident, $rows:ident$(($numbers:expr))?
+        $name:ident($type:ty) = $word:literal, $role:ident of $subject:ident, $rows:ident$(($numbers:expr))?
             $(, increments: $which:ident$(($of:expr))?)? $(, in $buffer:literal)?;
     )*) => {
         $(
@@ -285,6 +298,7 @@ macro_rules! columns {
             impl $crate::components::Column for $name {
                 const NAME: &'static str = $word;
                 const ROLE: $crate::components::Role = $crate::components::Role::$role;
+                const SUBJECT: $crate::components::Subject = $crate::components::Subject::$subject;
                 const BUFFER: &'static str = $crate::components::column::columns!(@buffer $word $($buffer)?);
                 const WORD: &'static str = <$type as $crate::components::column::AsBytes>::WORD;
                 const ROWS: $crate::components::Rows = $crate::components::column::columns!(@rows $rows $($numbers)?);
@@ -323,77 +337,3 @@ macro_rules! columns {
     };
 }
 pub(crate) use columns;
-
-/// Numbers that columns are made of.
-pub trait Word: bytemuck::Pod {
-    /// What they are in shaders; of those that only the host has, what they would be.
-    const WORD: &'static str;
-    /// So many times it.
-    fn times(self, factor: f64) -> Self;
-}
-
-impl Word for f32 {
-    const WORD: &'static str = "f32";
-    fn times(self, factor: f64) -> Self {
-        (factor * f64::from(self)) as f32
-    }
-}
-
-impl Word for f64 {
-    const WORD: &'static str = "f32";
-    fn times(self, factor: f64) -> Self {
-        factor * self
-    }
-}
-
-impl Word for u32 {
-    const WORD: &'static str = "u32";
-    fn times(self, factor: f64) -> Self {
-        debug_assert!(false, "counts are no changes in a step");
-        (factor * f64::from(self)) as u32
-    }
-}
-
-/// What columns are made of.
-pub trait AsBytes {
-    /// What the numbers are in shaders.
-    const WORD: &'static str;
-    /// The bytes.
-    fn as_bytes(&self) -> &[u8];
-    /// The bytes, to write.
-    fn as_bytes_mut(&mut self) -> &mut [u8];
-    /// Multiplies the numbers at some places of so many.
-    fn scale(&mut self, is_one: &dyn Fn(usize, usize) -> bool, factor: f64);
-}
-
-fn scale_words<T: Word>(words: &mut [T], is_one: &dyn Fn(usize, usize) -> bool, factor: f64) {
-    let length = words.len();
-    let scaled = words.iter_mut().enumerate().filter(|(place, _)| is_one(*place, length));
-    scaled.for_each(|(_, word)| *word = word.times(factor));
-}
-
-impl AsBytes for Reals {
-    const WORD: &'static str = "f32";
-    fn as_bytes(&self) -> &[u8] {
-        self.bytes()
-    }
-    fn as_bytes_mut(&mut self) -> &mut [u8] {
-        self.bytes_mut()
-    }
-    fn scale(&mut self, is_one: &dyn Fn(usize, usize) -> bool, factor: f64) {
-        either!(self, v => scale_words(v, is_one, factor));
-    }
-}
-
-impl<T: Word> AsBytes for Vec<T> {
-    const WORD: &'static str = T::WORD;
-    fn as_bytes(&self) -> &[u8] {
-        bytemuck::cast_slice(self)
-    }
-    fn as_bytes_mut(&mut self) -> &mut [u8] {
-        bytemuck::cast_slice_mut(self)
-    }
-    fn scale(&mut self, is_one: &dyn Fn(usize, usize) -> bool, factor: f64) {
-        scale_words(self, is_one, factor);
-    }
-}

@@ -1,4 +1,46 @@
-//! What the rows of a column belong to, and which of its numbers follow the length of steps.
+//! What a column is about, what its rows belong to, and which of its numbers follow the length of steps.
+
+/// What a column is about: what becomes of it where a step is tried and taken back, where its length changes, and where
+/// a motion begins at rest follows from that. Who declares a column says so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// Where nodes are and how they move. A step that is not found leaves it as it was; a motion from rest begins
+    /// there.
+    Motion,
+    /// Forces on nodes: likewise, for who looks at them then.
+    Force,
+    /// What the material remembers: likewise, and it follows the length of a step; at rest it has come to its end.
+    Memory,
+    /// What tools hold of nodes: a step that is not found leaves it as it was.
+    Grip,
+    /// Who touches, how deep, and what friction, ties and sutures hold: what a search for rest carries on between
+    /// loads, and what a motion from rest takes over.
+    Touch,
+    /// Shapes at rest, which laws and removal change.
+    Shape,
+    /// Masses and what goes with them, which removal changes.
+    Mass,
+    /// What of the mesh stays.
+    Mesh,
+    /// What does not move freely.
+    Constraint,
+    /// Which elements are there, and in which step they go.
+    Removal,
+    /// Which elements are turned inside out: what is only tried notes none.
+    Inversion,
+    /// Means that elements take pressures from.
+    Mean,
+    /// What the formula of implicit steps has beside.
+    Scheme,
+    /// What is sucked.
+    Suction,
+    /// Work, energies and momenta since the start.
+    Account,
+    /// What guards look at.
+    Guard,
+    /// What node systems have for themselves.
+    Own,
+}
 
 /// What a row of a column belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,17 +8,17 @@ use std::collections::HashMap;
 columns! {
     /// Force of other bodies, and of the body itself, on the node in the last step (N), a vector a node. Exists where
     /// the body may meet others or itself.
-    ContactForce(Reals) = "contact_force", State, Nodes(3);
+    ContactForce(Reals) = "contact_force", State of Touch, Nodes(3);
     /// What each node carries on as a point of a surface, [`MEETING_NUMBERS`] a node: how far it has slipped
     /// elastically (m, a vector); how deep it may be inside (m, 0 or negative); 0 where it faced nothing in the last
     /// step, 1 where it faced something, 2 where it stuck to it, 3 where it slid; how far it was outside of that before
     /// the step, where it touched after the step (m); since the start the length it has slid (m), and what impact and
     /// friction have taken (J). Exists with [`ContactForce`].
-    SurfaceTouch(Reals) = "surface_touch", State, Nodes(MEETING_NUMBERS);
+    SurfaceTouch(Reals) = "surface_touch", State of Touch, Nodes(MEETING_NUMBERS);
     /// The same of each point of faces: those of a facet after another, as the body's surface has them, or where
     /// [`FacePlaces`] says, and as [`face_points`](crate::contact::face_points) orders them. Exists where points of the
     /// body's faces meet others.
-    FaceTouch(Reals) = "face_touch", State, Other;
+    FaceTouch(Reals) = "face_touch", State of Touch, Other;
 }
 
 /// A spring in place of the kinematic law of contact (`Penalty`).

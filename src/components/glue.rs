@@ -9,7 +9,7 @@ columns! {
     /// What each tie is to the body that its point is of, [`TIE_NUMBERS`] a tie: 0 while it holds, 1 where it broke, 2
     /// where the tissue of one side has gone; when that was (s); the force on the point in the last step (N); what it
     /// has taken since the start (J).
-    TieState(Reals) = "tie_state", State, Other;
+    TieState(Reals) = "tie_state", State of Touch, Other;
 }
 
 /// Numbers a tie in [`TieState`].

@@ -13,7 +13,7 @@ columns! {
     /// and what of that was lost when it caught the node (J); the place in the tool's frame where the node was when it
     /// closed (m). Where a hand moves one of the tools, [`FELT_NUMBERS`] more: the sum of the forces since its batch of
     /// steps began (N). Exists where a tool may hold nodes of the body.
-    ToolHold(Reals) = "tool_hold", State, Other;
+    ToolHold(Reals) = "tool_hold", State of Grip, Other;
 }
 
 /// Numbers of a node and a grasp in [`ToolHold`].

@@ -11,6 +11,7 @@
 mod block;
 mod clock;
 mod column;
+mod column_bytes;
 mod column_layout;
 mod constraint;
 mod contact;
@@ -57,9 +58,9 @@ pub use block::{
 #[doc(hidden)]
 pub use clock::{Relaxation, TrialForces};
 #[doc(hidden)]
-pub use column::{ColumnAccess, Role, all_columns, columns_in, place_in_buffer};
+pub use column::{ColumnAccess, Role, all_columns, columns_in, names_of, place_in_buffer};
 #[doc(hidden)]
-pub use column_layout::{Increments, Rows};
+pub use column_layout::{Increments, Rows, Subject};
 #[doc(hidden)]
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
 #[doc(hidden)]

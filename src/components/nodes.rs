@@ -13,62 +13,62 @@ pub struct RestPosition(pub Vec<DVec3>);
 
 columns! {
     /// Displacement u (m), a vector a node.
-    Displacement(Reals) = "displacement", State, Nodes(3);
+    Displacement(Reals) = "displacement", State of Motion, Nodes(3);
     /// Displacement of the last step, u_n − u_{n−1} (m), a vector a node: velocity in the middle of the step times Δt.
     /// On constrained axes `boundary` writes the step to come here.
-    DisplacementIncrement(Reals) = "displacement_increment", State, Nodes(3), increments: All;
+    DisplacementIncrement(Reals) = "displacement_increment", State of Motion, Nodes(3), increments: All;
     /// What rounding has made of the displacements too much (m), a vector a node, and then what of their steps,
     /// likewise. Exists in f32 where sums are compensated.
-    DisplacementCompensation(Reals) = "displacement_compensation", State, Other, increments: SecondHalf;
+    DisplacementCompensation(Reals) = "displacement_compensation", State of Motion, Other, increments: SecondHalf;
     /// Lumped mass (kg), a number a node; 0: the node is inactive.
-    Mass(Reals) = "mass", State, Nodes(1);
+    Mass(Reals) = "mass", State of Mass, Nodes(1);
     /// Mass (kg) that resists acceleration in place of the real one, which only weighs then: in static analyses the
     /// mass that makes every element's bound of the stable step the same, else the real one and what was added to it
     /// where a scene has mass scaled. A number a node.
-    InertialMass(Reals) = "inertial_mass", State, Nodes(1);
+    InertialMass(Reals) = "inertial_mass", State of Mass, Nodes(1);
     /// Σ c m over a node's elements (kg/s): damping rate times mass. Exists when a material is damped.
-    DampingCoefficient(Reals) = "damping_coefficient", State, Nodes(1);
+    DampingCoefficient(Reals) = "damping_coefficient", State of Mass, Nodes(1);
     /// Force of the deformed elements on the node, sign such that M ü = R − F (N), a vector a node.
-    InternalForce(Reals) = "internal_force", State, Nodes(3);
+    InternalForce(Reals) = "internal_force", State of Force, Nodes(3);
     /// Sum R of all loads (N), a vector a node. Exists when there are loads.
-    ExternalForce(Reals) = "external_force", State, Nodes(3);
+    ExternalForce(Reals) = "external_force", State of Force, Nodes(3);
     /// Bits 0, 1, 2: the node does not move freely along x, y, z.
-    ConstrainedAxes(Vec<u32>) = "constrained_axes", Given, Nodes(1);
+    ConstrainedAxes(Vec<u32>) = "constrained_axes", Given of Constraint, Nodes(1);
     /// Work done on or by a node since the start (J): by loads, against damping, by constraints, by internal forces;
     /// then the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. Exists
     /// when energies are asked for.
-    Work(Reals) = "work", State, Nodes(WORK_NUMBERS), increments: LastThreeOf(WORK_NUMBERS);
+    Work(Reals) = "work", State of Account, Nodes(WORK_NUMBERS), increments: LastThreeOf(WORK_NUMBERS);
     /// Acceleration at the end of the last step (m/s²), a vector a node. Exists where implicit steps are of second
     /// order.
-    Acceleration(Reals) = "acceleration", State, Nodes(3);
+    Acceleration(Reals) = "acceleration", State of Scheme, Nodes(3);
     /// Energy that the formula of implicit steps has taken from a node since the start (J), a number a node. Exists in
     /// implicit runs when energies are asked for.
-    SchemeLoss(Reals) = "scheme_loss", State, Nodes(1);
+    SchemeLoss(Reals) = "scheme_loss", State of Scheme, Nodes(1);
     /// Two numbers: the lowest row of a node whose displacement was found not finite, and the step in which it was: the
     /// first in which there was one; `u32::MAX`: none.
-    FirstNonFinite(Vec<u32>) = "first_non_finite", State, Other, in "node_diagnostics";
+    FirstNonFinite(Vec<u32>) = "first_non_finite", State of Guard, Other, in "node_diagnostics";
     /// Work against internal forces since the start (J), in f32 whatever the run's precision: two numbers for each
     /// [`GROUP_ROWS`] nodes and two more, a sum over nodes that move together and what rounding has left out of it.
     /// Exists in a motion without [`Work`] whose energy is guarded.
-    InternalWork(Vec<f32>) = "internal_work", State, Other, in "node_diagnostics";
+    InternalWork(Vec<f32>) = "internal_work", State of Account, Other, in "node_diagnostics";
     /// Displacement of the last step along prescribed axes (m), which `boundary` has written over in
     /// [`DisplacementIncrement`], in f32 whatever the run's precision: a vector a node. Exists with [`InternalWork`]
     /// where nodes are prescribed.
-    PreviousPrescribedIncrement(Vec<f32>) = "previous_prescribed_increment", State, Nodes(3), increments: All, in "node_diagnostics";
+    PreviousPrescribedIncrement(Vec<f32>) = "previous_prescribed_increment", State of Account, Nodes(3), increments: All, in "node_diagnostics";
     /// Bits: which of those node systems that choose their nodes have chosen a node. Exists when there are some.
-    ChosenBy(Vec<u32>) = "chosen_by", State, Nodes(1);
+    ChosenBy(Vec<u32>) = "chosen_by", State of Own, Nodes(1);
     /// Numbers that node systems keep for themselves from step to step: those of a node side by side, of one system
     /// after the other. Exists when a system has some.
-    OwnNumbers(Reals) = "own_numbers", State, Other;
+    OwnNumbers(Reals) = "own_numbers", State of Own, Other;
     /// Displacement in the middle of the last step (m), a vector a node: for the guards on a GPU.
-    MiddleDisplacement(Reals) = "middle_displacement", Scratch, Nodes(3);
+    MiddleDisplacement(Reals) = "middle_displacement", Scratch of Guard, Nodes(3);
     /// What each 64 nodes come to, four words each: bits of ½ m d² (kg m²) and of the longest step's square (m²), its
     /// row, bits of the square of the largest displacement (m²).
-    NodeSums(Vec<u32>) = "node_sums", Scratch, Other;
+    NodeSums(Vec<u32>) = "node_sums", Scratch of Guard, Other;
     /// Forces of all elements (N), all blocks of the body one after the other: a vector for each node of each patch
     /// ([`Patches`](super::Patches)), which those that move with their patch do not use; in the scheme of two passes
     /// those on corners, in each group of [`LANES`](crate::math::LANES) elements by corner, component, element.
-    ElementForce(Reals) = "element_force", Scratch, Other;
+    ElementForce(Reals) = "element_force", Scratch of Force, Other;
 }
 
 /// Nodes to a sum in [`InternalWork`]: no less are moved together, so that who moves some has a sum of its own.

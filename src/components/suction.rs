@@ -9,12 +9,12 @@ use std::sync::Arc;
 columns! {
     /// For each of a body's [`Suction`]s two numbers: the pressure by which faces are sucked (Pa), and the share of the
     /// mouth that they close. Exists where something sucks.
-    SuctionPressure(Reals) = "suction_pressure", State, Other;
+    SuctionPressure(Reals) = "suction_pressure", State of Suction, Other;
     /// For each of a body's [`Suction`]s and each of [`BodyFaces`] the bits of the share (f32) of it that is sucked;
     /// then for each of the faces' nodes 1 where one of its faces is, else 0. Exists where something sucks.
-    SuctionMarks(Vec<u32>) = "suction_marks", State, Other;
+    SuctionMarks(Vec<u32>) = "suction_marks", State of Suction, Other;
     /// For each of [`BodyFaces`] 1 while its element is there, else 0. Exists where something sucks.
-    FacePresence(Vec<u32>) = "face_presence", Scratch, Other;
+    FacePresence(Vec<u32>) = "face_presence", Scratch of Suction, Other;
 }
 
 /// Numbers of a tool in [`SuctionPressure`].

@@ -14,7 +14,7 @@ columns! {
     /// stuck to the tool, 2 where it slid; since the start the length it has slid (m), the work that the tool has done
     /// and what of that impact and friction have taken (J). Where a hand moves one of the tools, [`FELT_NUMBERS`] more:
     /// the sum of the forces since its batch of steps began (N). Exists where tools may touch the body.
-    ToolTouch(Reals) = "tool_touch", State, Other;
+    ToolTouch(Reals) = "tool_touch", State of Touch, Other;
 }
 
 /// Numbers of a node and a tool in [`ToolTouch`].

@@ -10,10 +10,10 @@ columns! {
     /// For each of a body's [`ToolRemovals`] two numbers: the volume (m³) that the tool has taken in and that is no
     /// element's yet, and 1 if something was in its reach when it was last looked, else 0. Exists with
     /// [`ToolRemovals`].
-    ToolIntake(Reals) = "tool_intake", State, Other;
+    ToolIntake(Reals) = "tool_intake", State of Account, Other;
     /// What a device needs to choose elements: how many are in reach, three words each (key, number, bits of the
     /// volume), from [`ToolRemovals::chosen`] on how many are chosen, and their numbers. Exists with [`ToolRemovals`].
-    ToolReach(Vec<u32>) = "tool_reach", Scratch, Other;
+    ToolReach(Vec<u32>) = "tool_reach", Scratch of Removal, Other;
 }
 
 /// Where a tool takes elements away: in its frame all that is no farther than `reach` from this.

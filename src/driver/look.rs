@@ -57,7 +57,7 @@ impl Look {
     /// Begins to look at a scene.
     pub fn begin(&mut self, scene: &SceneFile, simulation: &mut Simulation) -> Result<(), Error> {
         let bodies = scene.scene.bodies.keys().map(|name| body(name, simulation)).collect::<Result<_, _>>()?;
-        let columns = |what| header(what).into_iter().skip(1).map(String::from).collect();
+        let columns = |what| header(what).into_iter().skip(1).map(|column| column.to_string()).collect();
         let loaded = Loaded {
             number: self.scenes,
             scene: scene.clone(),

@@ -4,7 +4,7 @@ use super::{Element, MOST_NODES, MOST_POINTS, MOST_ROWS, PressureFrom};
 use crate::mesh::ElementKind;
 
 macro_rules! make_with_element {
-    ($dollar:tt $($(#[$about:meta])* $kind:ident: $cell:ident, $shader:literal;)*) => {
+    ($dollar:tt $($(#[$about:meta])* $file:ident: $kind:ident of $cell:ident, $shader:literal;)*) => {
         /// Runs an expression with `$element` standing for the type of an [`ElementKind`].
         macro_rules! with_element {
             ($dollar of:expr, $dollar element:ident => $dollar body:expr) => {

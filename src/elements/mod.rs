@@ -1,6 +1,7 @@
 //! Finite elements: displacement gradients from nodal displacements, nodal forces from stress.
 //!
-//! An element is one Rust file with its WGSL twin of the same stem in `shaders/`.
+//! An element is one Rust file with its WGSL twin of the same stem in `shaders/`, and one line of the list in
+//! `src/mesh/generators/mod.rs`.
 
 mod hex8;
 mod hex8_mean_dilatation;
@@ -10,20 +11,22 @@ mod tet4;
 mod tet4_nodal_pressure;
 mod wedge6;
 
-pub use hex8::{Hex8, Hexahedron, Parallelepiped};
-pub use hex8_mean_dilatation::Hex8MeanDilatation;
+pub use hex8::{Hexahedron, Parallelepiped};
 pub use kinds::{
     ElementTask, averages, elements_a_patch, mass_shares, node_count, point_count, rounding, run_with_element,
 };
 pub(crate) use kinds::{with_element, with_element_of};
-pub use tet4::Tet4;
-pub use tet4_nodal_pressure::Tet4NodalPressure;
-pub use tet10::Tet10;
-pub use wedge6::Wedge6;
 
 use crate::math::{Mat3, Real};
-use crate::mesh::CellKind;
+use crate::mesh::{CellKind, each_element_kind};
 use glam::DVec3;
+
+macro_rules! element_types {
+    ($dollar:tt $($(#[$about:meta])* $file:ident: $kind:ident of $cell:ident, $shader:literal;)*) => {
+        $(pub use $file::$kind;)*
+    };
+}
+each_element_kind! { $ element_types }
 
 /// Nodes of the element type that has most: kernels have room for so many.
 pub const MOST_NODES: usize = 10;

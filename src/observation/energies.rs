@@ -1,5 +1,6 @@
 //! Energies and mass.
 
+use super::heading::Heading;
 use crate::backend::cpu::{Cpu, ROWS_A_TASK};
 use crate::backend::device::bring_to_host;
 use crate::components::*;
@@ -10,28 +11,28 @@ use bevy_ecs::prelude::*;
 use glam::DVec3;
 
 /// All columns.
-const HEADER: [&str; 11] = [
-    "time (s)",
-    "kinetic (J)",
-    "strain (J)",
-    "hourglass (J)",
-    "removed (J)",
-    "load work (J)",
-    "damping loss (J)",
-    "constraint work (J)",
-    "internal work (J)",
-    "contact loss (J)",
-    "scheme loss (J)",
+const HEADER: [(&str, &str); 11] = [
+    ("time", "s"),
+    ("kinetic", "J"),
+    ("strain", "J"),
+    ("hourglass", "J"),
+    ("removed", "J"),
+    ("load work", "J"),
+    ("damping loss", "J"),
+    ("constraint work", "J"),
+    ("internal work", "J"),
+    ("contact loss", "J"),
+    ("scheme loss", "J"),
 ];
 
 /// The columns of `energy.csv`; a static analysis counts no work, only what touches something loses energy to that, and
 /// only implicit steps lose some.
-pub fn energy_header(at_rest: bool, implicit: bool, touches: bool) -> Vec<&'static str> {
+pub fn energy_header(at_rest: bool, implicit: bool, touches: bool) -> Vec<Heading> {
     let of_contact = if touches { &HEADER[9..10] } else { &[] };
     let of_scheme = if implicit { &HEADER[10..] } else { &[] };
     match at_rest {
-        true => HEADER[..5].to_vec(),
-        false => [&HEADER[..9], of_contact, of_scheme].concat(),
+        true => Heading::all(&HEADER[..5]),
+        false => Heading::all(&[&HEADER[..9], of_contact, of_scheme].concat()),
     }
 }
 

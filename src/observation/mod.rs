@@ -10,6 +10,7 @@ mod frame;
 mod free_tools;
 mod grasps;
 mod guards;
+mod heading;
 mod overlaps;
 mod path;
 mod probes;
@@ -26,6 +27,7 @@ pub use energies::{energies, energy_header, mass, removed_momentum};
 pub use fields::{BodyFields, body_fields, internal_forces};
 pub use frame::{WrittenFields, field_of, write as write_fields, write_whole};
 pub use guards::{GuardSettings, begin as begin_to_guard, held_for_long};
+pub use heading::Heading;
 pub use path::{PATH, columns_of_probe};
 pub use probes::{header, observe_probe, volume_left};
 pub use rounding::{Rounding, shortest_edge};
@@ -173,14 +175,18 @@ impl Observer {
             None => None,
             Some(_) => Some(Table::create(
                 &folder.claim("energy.csv")?,
-                &energy_header(self.to_rest, world.resource::<Clock>().velocities_at_ends, self.touches),
+                &Heading::texts(&energy_header(
+                    self.to_rest,
+                    world.resource::<Clock>().velocities_at_ends,
+                    self.touches,
+                )),
             )?),
         };
         let mut probes = BTreeMap::new();
         for ProbeTrack { entity, name, .. } in &self.probes {
             let Some(probe) = world.get::<Probe>(*entity) else { continue };
             let path = folder.claim(&format!("probe_{name}.csv"))?;
-            probes.insert(name.clone(), Table::create(&path, &header(&probe.what))?);
+            probes.insert(name.clone(), Table::create(&path, &Heading::texts(&header(&probe.what)))?);
         }
         let convergence = match world.resource::<Clock>().relaxation {
             None => None,

@@ -1,6 +1,7 @@
 //! Paths of equilibria: `path.csv`, a row a point.
 
 use super::Observer;
+use super::heading::Heading;
 use super::probes::{header, observe_probe};
 use crate::components::Probe;
 use crate::error::Error;
@@ -8,19 +9,22 @@ use crate::scene::schema::Quantity;
 use bevy_ecs::prelude::*;
 
 /// The columns before those of probes.
-pub const PATH: [&str; 5] = ["point", "load factor", "length (m)", "iterations", "unstable"];
+pub const PATH: [(&str, &str); 5] =
+    [("point", "1"), ("load factor", "1"), ("length", "m"), ("iterations", "1"), ("unstable", "1")];
 
 /// The columns of a probe, without the time.
-pub fn columns_of_probe(name: &str, probe: &Quantity) -> Vec<String> {
-    header(probe).iter().skip(1).map(|column| format!("{name}: {column}")).collect()
+pub fn columns_of_probe(probe: &Quantity) -> Vec<Heading> {
+    header(probe).split_off(1)
 }
 
 impl Observer {
     /// The columns of `path.csv`.
     pub(super) fn path_header(&self, world: &World) -> Vec<String> {
         let of_probes = self.probes.iter().filter_map(|of| Some((&of.name, world.get::<Probe>(of.entity)?)));
-        let of_probes = of_probes.flat_map(|(name, probe)| columns_of_probe(name, &probe.what));
-        PATH.iter().map(|column| column.to_string()).chain(of_probes).collect()
+        let of_probes = of_probes.flat_map(|(name, probe)| {
+            columns_of_probe(&probe.what).into_iter().map(move |column| format!("{name}: {column}"))
+        });
+        Heading::texts(&Heading::all(&PATH)).into_iter().chain(of_probes).collect()
     }
 
     /// Notes a point of a path where bodies are: what the first columns of `path.csv` hold.

@@ -1,5 +1,6 @@
 //! Probes.
 
+use super::heading::Heading;
 use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::Error;
@@ -9,34 +10,36 @@ use bevy_ecs::prelude::*;
 use glam::DVec3;
 
 /// The columns of a probe's table.
-pub fn header(what: &Quantity) -> Vec<&'static str> {
-    let columns: &[&str] = match what {
-        Quantity::Displacement => &["ux (m)", "uy (m)", "uz (m)"],
-        Quantity::Position => &["x (m)", "y (m)", "z (m)"],
-        Quantity::Velocity => &["vx (m/s)", "vy (m/s)", "vz (m/s)"],
-        Quantity::Reaction => &["Rx (N)", "Ry (N)", "Rz (N)"],
-        Quantity::Force { .. } => &["force (N)"],
-        Quantity::Moment { .. } => &["Mx (N m)", "My (N m)", "Mz (N m)"],
-        Quantity::Torque { .. } => &["torque (N m)"],
-        Quantity::Stress => &["xx (Pa)", "yy (Pa)", "zz (Pa)", "xy (Pa)", "yz (Pa)", "xz (Pa)"],
-        Quantity::VolumeRatio => &["J"],
-        Quantity::RemovedVolume => &["volume (m³)"],
-        Quantity::ContactForce => &["Fx (N)", "Fy (N)", "Fz (N)"],
-        Quantity::ContactPressure => &["pressure (Pa)"],
-        Quantity::ContactArea => &["area (m²)"],
-        Quantity::ContactGap => &["gap (m)"],
-        Quantity::ContactSlip => &["slip (m)"],
-        Quantity::AttachmentForce { .. } => &["Fx (N)", "Fy (N)", "Fz (N)"],
-        Quantity::SutureLength { .. } => &["length (m)"],
-        Quantity::ToolForce { .. } => &["Fx (N)", "Fy (N)", "Fz (N)"],
-        Quantity::ToolTorque { .. } => &["Tx (N m)", "Ty (N m)", "Tz (N m)"],
-        Quantity::ToolPlace { .. } => &["x (m)", "y (m)", "z (m)"],
-        Quantity::ToolPose { .. } => &["x (m)", "y (m)", "z (m)", "rx (degrees)", "ry (degrees)", "rz (degrees)"],
+pub fn header(what: &Quantity) -> Vec<Heading> {
+    let columns: &[(&'static str, &'static str)] = match what {
+        Quantity::Displacement => &[("ux", "m"), ("uy", "m"), ("uz", "m")],
+        Quantity::Position => &[("x", "m"), ("y", "m"), ("z", "m")],
+        Quantity::Velocity => &[("vx", "m/s"), ("vy", "m/s"), ("vz", "m/s")],
+        Quantity::Reaction => &[("Rx", "N"), ("Ry", "N"), ("Rz", "N")],
+        Quantity::Force { .. } => &[("force", "N")],
+        Quantity::Moment { .. } => &[("Mx", "N m"), ("My", "N m"), ("Mz", "N m")],
+        Quantity::Torque { .. } => &[("torque", "N m")],
+        Quantity::Stress => &[("xx", "Pa"), ("yy", "Pa"), ("zz", "Pa"), ("xy", "Pa"), ("yz", "Pa"), ("xz", "Pa")],
+        Quantity::VolumeRatio => &[("J", "1")],
+        Quantity::RemovedVolume => &[("volume", "m³")],
+        Quantity::ContactForce => &[("Fx", "N"), ("Fy", "N"), ("Fz", "N")],
+        Quantity::ContactPressure => &[("pressure", "Pa")],
+        Quantity::ContactArea => &[("area", "m²")],
+        Quantity::ContactGap => &[("gap", "m")],
+        Quantity::ContactSlip => &[("slip", "m")],
+        Quantity::AttachmentForce { .. } => &[("Fx", "N"), ("Fy", "N"), ("Fz", "N")],
+        Quantity::SutureLength { .. } => &[("length", "m")],
+        Quantity::ToolForce { .. } => &[("Fx", "N"), ("Fy", "N"), ("Fz", "N")],
+        Quantity::ToolTorque { .. } => &[("Tx", "N m"), ("Ty", "N m"), ("Tz", "N m")],
+        Quantity::ToolPlace { .. } => &[("x", "m"), ("y", "m"), ("z", "m")],
+        Quantity::ToolPose { .. } => {
+            &[("x", "m"), ("y", "m"), ("z", "m"), ("rx", "degrees"), ("ry", "degrees"), ("rz", "degrees")]
+        }
         Quantity::ToolVelocity { .. } => {
-            &["vx (m/s)", "vy (m/s)", "vz (m/s)", "wx (rad/s)", "wy (rad/s)", "wz (rad/s)"]
+            &[("vx", "m/s"), ("vy", "m/s"), ("vz", "m/s"), ("wx", "rad/s"), ("wy", "rad/s"), ("wz", "rad/s")]
         }
     };
-    std::iter::once("time (s)").chain(columns.iter().copied()).collect()
+    Heading::all(&[&[("time", "s")][..], columns].concat())
 }
 
 /// What a probe sees at the present step.

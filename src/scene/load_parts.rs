@@ -19,6 +19,8 @@ pub struct LoadParts<'a> {
     pub field: (&'static str, &'static str),
     /// What the course multiplies, in that unit; of a number the first of three.
     pub amplitude: DVec3,
+    /// Whether that has a direction.
+    pub is_vector: bool,
     /// Between what amplitudes it usually is, where something can be said of all scenes.
     pub usual: Option<&'static Usual>,
     /// Its course in time.
@@ -63,21 +65,65 @@ impl<'a> On<'a> {
     }
 }
 
-/// What of a load may be written anew: the body that it names and what it acts on, none if it acts on all bodies alike;
-/// what its course multiplies; its course.
+/// What of a load may be written anew.
 pub struct LoadPartsMut<'a> {
-    /// Of one body.
-    pub on: Option<(&'a mut Option<String>, &'a mut Select)>,
+    /// The body that it names.
+    pub body: &'a mut Option<String>,
+    /// What it acts on; none where that is all.
+    pub on: Option<&'a mut Select>,
     /// What its course multiplies.
-    pub amplitude: Amplitude<'a>,
+    pub amplitude: &'a mut dyn Amplitude,
     /// Its course in time.
     pub curve: &'a mut Curve,
 }
 
-/// What the course of a load multiplies.
-pub enum Amplitude<'a> {
-    /// A vector in space.
-    Vector(&'a mut DVec3),
-    /// A number.
-    Number(&'a mut f64),
+/// What the course of a load multiplies: a vector in space, or a number.
+pub trait Amplitude {
+    /// Whether it has a direction.
+    fn is_vector(&self) -> bool;
+
+    /// As a vector; a number is its first component.
+    fn vector(&self) -> DVec3;
+
+    /// Sets it likewise.
+    fn set(&mut self, amplitude: DVec3);
+
+    /// What turns where space does.
+    fn direction(&mut self) -> Option<&mut DVec3>;
+}
+
+impl Amplitude for DVec3 {
+    fn is_vector(&self) -> bool {
+        true
+    }
+
+    fn vector(&self) -> DVec3 {
+        *self
+    }
+
+    fn set(&mut self, amplitude: DVec3) {
+        *self = amplitude;
+    }
+
+    fn direction(&mut self) -> Option<&mut DVec3> {
+        Some(self)
+    }
+}
+
+impl Amplitude for f64 {
+    fn is_vector(&self) -> bool {
+        false
+    }
+
+    fn vector(&self) -> DVec3 {
+        DVec3::X * *self
+    }
+
+    fn set(&mut self, amplitude: DVec3) {
+        *self = amplitude.x;
+    }
+
+    fn direction(&mut self) -> Option<&mut DVec3> {
+        None
+    }
 }

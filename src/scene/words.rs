@@ -1,10 +1,14 @@
 //! What the words of a scene mean, as their own documentation says: messages quote it.
 
-use super::schema::texts;
+use super::schema::{LOADS, texts};
 
 /// The first sentence on a field of a struct or of a variant, with its unit: `duration` of `Scene` is
 /// "Simulated time (s)."
 pub fn meaning(owner: &str, field: &str) -> Option<String> {
+    // loads are made of a list, which has what they must have
+    if let Some((.., fields)) = LOADS.iter().find(|(_, word, _)| *word == owner) {
+        return fields.iter().find(|(name, _)| *name == field).map(|(_, means)| (*means).to_owned());
+    }
     let mut lines = texts().flat_map(|file| file.lines()).map(str::trim).skip_while(|line| {
         let named = line.strip_prefix("pub struct ").and_then(|rest| rest.strip_prefix(owner));
         !(named.is_some_and(|rest| rest.starts_with([' ', '<'])) || *line == format!("{owner} {{"))

@@ -5,7 +5,7 @@ use super::inputs::Tape;
 use super::interval::RunInterval;
 use super::known::Known;
 use super::options::{BackendChoice, Chosen, choose};
-use super::plan::{Over, Pass, Plan, Planned, each_once};
+use super::plan::{Over, Pass, Plan, each_once};
 use super::prepare::{Prepared, add_loads, counts, prepare};
 use super::schedule::Scheduled;
 use super::scheme::{fill_gpu, fit_workgroups, sum_forces, summed};
@@ -267,22 +267,29 @@ fn entries(
     for pass in plan.passes(on_gpu) {
         let first = pass.systems[0];
         let kernels = kernels.next().filter(|_| plan.systems[first].on_device);
-        let of_nodes = |places: &[usize]| {
-            NodePass::new(places.iter().filter_map(|&place| schedule[place].system.host.nodes()).collect())
+        let of_nodes = |places: &[usize], world: &mut World| {
+            let systems = places.iter().map(|&place| schedule[place].system);
+            NodePass::new(systems.filter_map(|system| Some((system.name.as_str(), system.host.nodes()?))), world)
         };
-        let nodes = || of_nodes(&pass.systems);
         let host = hosts[first].take();
         let job = match (kernels, pass.over, host) {
             (Some(kernels), ..) => Job::Kernels(kernels),
             (None, Over::Elements, _) => {
-                host_job(patch_pass(nodes(), of_nodes(&pass.ahead), world), schedule, plan, pass)
+                let (pass_of_nodes, ahead) = (of_nodes(&pass.systems, world), of_nodes(&pass.ahead, world));
+                host_job(patch_pass(pass_of_nodes, ahead, world), schedule, plan, pass)
             }
-            (None, Over::Shared, _) => host_job(shared_pass(nodes(), world), schedule, plan, pass),
+            (None, Over::Shared, _) => {
+                let shared = of_nodes(&pass.systems, world);
+                host_job(shared_pass(shared, world), schedule, plan, pass)
+            }
             // what a GPU has no kernels for may be one of nodes on the host
             (None, _, Some(host)) if schedule[first].system.host.nodes().is_none() => {
                 host_job(host, schedule, plan, pass)
             }
-            (None, ..) => host_job(node_pass(nodes(), world), schedule, plan, pass),
+            (None, ..) => {
+                let nodes = of_nodes(&pass.systems, world);
+                host_job(node_pass(nodes, world), schedule, plan, pass)
+            }
         };
         let names: Vec<&str> = plan.systems_of(pass).map(|system| system.name.as_str()).collect();
         let phase = plan.systems_of(pass).map(|system| system.phase).max().unwrap_or(plan.systems[first].phase);
@@ -293,7 +300,7 @@ fn entries(
         };
         let systems = pass.systems.clone();
         let reads = each_once(plan.systems_of(pass).flat_map(|system| &system.reads).copied());
-        let finds_forces = plan.systems_of(pass).any(Planned::finds_forces);
+        let finds_forces = plan.systems_of(pass).any(|system| system.finds_forces);
         let (time, runs) = (Duration::ZERO, 0);
         entries.push(ScheduledPass { name, phase, finds_forces, systems, job, reads, before_steps, time, runs });
     }

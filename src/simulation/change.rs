@@ -18,9 +18,15 @@ use crate::scene::schema::{Scene, WhenUnstable};
 use crate::scene::{SceneFile, other_than_parameters, validate};
 use bevy_ecs::prelude::*;
 
-/// What is read and changed on the host.
-const READ: [&str; 4] = [Displacement::NAME, DisplacementIncrement::NAME, RestShape::NAME, ViscousMemory::NAME];
-const WRITTEN: [&str; 2] = [RestShape::NAME, ViscousMemory::NAME];
+/// What is changed on the host.
+fn written() -> Vec<&'static str> {
+    names_of(|column| matches!(column.subject, Subject::Shape | Subject::Memory))
+}
+
+/// What is read there: the same, and what it follows from.
+fn read() -> Vec<&'static str> {
+    names_of(|column| matches!(column.subject, Subject::Shape | Subject::Memory | Subject::Motion))
+}
 
 impl Simulation {
     /// Changes parameters from the next step on, by their places in the scene and in the words of `--set`:
@@ -97,16 +103,19 @@ impl Simulation {
             Some(text) => self.read_changed(text, &[])?.scene,
             None => self.file.scene.clone(),
         };
-        bring_to_host(&mut self.world, |_, name| READ.contains(&name))?;
+        let read = read();
+        bring_to_host(&mut self.world, |_, name| read.contains(&name))?;
         self.renew(&scene)?;
         self.world.resource_mut::<Signals>().renew_loads(&scene.loads);
         (self.scene, self.changed) = (scene, text);
-        send_to_device(&mut self.world, |_, name| WRITTEN.contains(&name))
+        let written = written();
+        send_to_device(&mut self.world, |_, name| written.contains(&name))
     }
 
     fn change_materials(&mut self, scene: &Scene) -> Result<(), Error> {
         let before = held_for_long(&mut self.world)?;
-        bring_to_host(&mut self.world, |_, name| READ.contains(&name))?;
+        let read = read();
+        bring_to_host(&mut self.world, |_, name| read.contains(&name))?;
         let changed = self.renew(scene)?;
         if let Err(refused) = self.find_stable_step() {
             let scene = self.scene.clone();
@@ -116,7 +125,8 @@ impl Simulation {
         for (entity, law) in changed {
             remember_as_before(&mut self.world, entity, &law);
         }
-        send_to_device(&mut self.world, |_, name| WRITTEN.contains(&name))?;
+        let written = written();
+        send_to_device(&mut self.world, |_, name| written.contains(&name))?;
         let more = held_for_long(&mut self.world)? - before;
         self.world.resource_mut::<GuardMemory>().at_start += more;
         if let Some(follower) = self.solver.follower_mut() {

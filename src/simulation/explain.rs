@@ -286,7 +286,7 @@ impl Simulation {
         let of_forces = |kernel: &&KernelInUse| {
             let first = kernel.systems.first();
             let planned = plan.systems.iter().find(|planned| Some(&planned.name) == first);
-            planned.is_some_and(Planned::finds_forces)
+            planned.is_some_and(|planned| planned.finds_forces)
         };
         let forces_on_gpu = on_gpu.then(|| kernels.iter().filter(of_forces).map(|kernel| kernel.times).sum());
         for system in &mut systems {

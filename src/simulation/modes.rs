@@ -53,7 +53,8 @@ impl Simulation {
     /// What the GPU says; states whose forces are no numbers.
     pub fn modes(&mut self, count: usize) -> Result<Vec<Mode>, Error> {
         self.settle()?;
-        bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
+        let columns = Tangent::columns();
+        bring_to_host(&mut self.world, |_, name| columns.contains(&name))?;
         let bodies = bodies(&mut self.world);
         let roots = roots_of_mass(&self.world, &bodies);
         let free = roots.iter().filter(|&&root| root > 0.0).count();

@@ -1,8 +1,8 @@
 //! What a program has to know to read the outputs of a run: names behind numbers, columns, units, values of the scene.
 
-use crate::observation;
+use crate::observation::{self, Heading};
 use crate::output::nodes;
-use crate::scene::schema::{OutputField, Probe, Scene};
+use crate::scene::schema::{OutputField, Scene};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -44,27 +44,30 @@ impl Names {
             unit: field.unit(),
             components: field.components(),
         };
-        let with_units = |header: &[&str]| header.iter().map(|column| split(column)).collect::<Vec<_>>();
+        let pair = |name: &str, unit: &str| (name.to_string(), unit.to_string());
+        let with_units = |header: Vec<Heading>| header.iter().map(|of| pair(of.name, of.unit)).collect::<Vec<_>>();
         let mut columns: BTreeMap<String, Vec<(String, String)>> = scene
             .probes
             .iter()
-            .map(|(name, probe)| (format!("probe_{name}.csv"), with_units(&observation::header(&probe.what))))
+            .map(|(name, probe)| (format!("probe_{name}.csv"), with_units(observation::header(&probe.what))))
             .collect();
         if scene.output.energies_every.is_some() {
             let header = observation::energy_header(scene.is_static(), scene.is_implicit(), scene.touches());
-            columns.insert("energy.csv".into(), with_units(&header));
+            columns.insert("energy.csv".into(), with_units(header));
         }
         if scene.is_static() {
-            columns.insert("convergence.csv".into(), with_units(&observation::CONVERGENCE));
+            columns.insert("convergence.csv".into(), observation::CONVERGENCE.map(|name| pair(name, "1")).to_vec());
         }
         if scene.follows_path() {
-            let of_probe = |(name, probe): (&String, &Probe)| observation::columns_of_probe(name, &probe.what);
-            let of_probes: Vec<String> = scene.probes.iter().flat_map(of_probe).collect();
-            let all = observation::PATH.iter().copied().chain(of_probes.iter().map(String::as_str));
-            columns.insert("path.csv".into(), with_units(&all.collect::<Vec<_>>()));
+            let mut all: Vec<(String, String)> =
+                observation::PATH.iter().map(|(name, unit)| pair(name, unit)).collect();
+            for (name, probe) in &scene.probes {
+                let of_probe = observation::columns_of_probe(&probe.what).into_iter();
+                all.extend(of_probe.map(|of| pair(&format!("{name}: {}", of.name), of.unit)));
+            }
+            columns.insert("path.csv".into(), all);
         }
-        let of_nodes: Vec<(String, String)> =
-            nodes::COLUMNS.iter().map(|(name, unit)| (name.to_string(), unit.to_string())).collect();
+        let of_nodes: Vec<(String, String)> = nodes::COLUMNS.iter().map(|(name, unit)| pair(name, unit)).collect();
         for name in scene.bodies.keys() {
             columns.insert(nodes::file_name(name, scene.bodies.len()), of_nodes.clone());
         }
@@ -75,13 +78,6 @@ impl Names {
             columns,
         }
     }
-}
-
-/// "ux (m)" is ux in m, "J" a plain number.
-fn split(column: &str) -> (String, String) {
-    let parts = column.strip_suffix(')').and_then(|column| column.split_once(" ("));
-    let (name, unit) = parts.unwrap_or((column, "1"));
-    (name.to_string(), unit.to_string())
 }
 
 /// The values of a scene as JSON; as text in RON, where systems of one's own have parameters that JSON cannot hold.

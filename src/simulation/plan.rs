@@ -8,7 +8,7 @@ use super::schedule::Scheduled;
 use super::scheme::Summed;
 use crate::backend::dispatch::Dispatched;
 use crate::backend::kernel::Kernel;
-use crate::components::{Column, ColumnAccess, SutureForce, Touched};
+use crate::components::{ColumnAccess, Role, Touched, names_of};
 use crate::systems::{Phase, Repeat, RowSet};
 use bevy_ecs::prelude::World;
 use bevy_ecs::system::SystemAccess;
@@ -46,6 +46,8 @@ pub(super) struct Planned {
     pub on_device: bool,
     /// Steps between two runs.
     pub every: u64,
+    /// Whether it finds forces, or what those of others need: threads are looked at before all.
+    pub finds_forces: bool,
     /// Names of the columns that it reads and writes.
     pub reads: Vec<&'static str>,
     pub writes: Vec<&'static str>,
@@ -85,10 +87,14 @@ pub(super) enum Over {
     Shared,
 }
 
-impl Planned {
-    /// Whether it finds forces, or what those of others need: threads are looked at before all.
-    pub fn finds_forces(&self) -> bool {
-        self.phase > Phase::Boundary && self.phase < Phase::Integrate || self.writes.contains(&SutureForce::NAME)
+/// Marks what is before forces and makes, for the step that it is in, what one that finds forces reads.
+fn mark_what_forces_need(systems: &mut [Planned]) {
+    let scratch = names_of(|column| column.role == Role::Scratch);
+    let finders = systems.iter().filter(|system| system.finds_forces);
+    let needed: Vec<&str> =
+        finders.flat_map(|system| &system.reads).copied().filter(|column| scratch.contains(column)).collect();
+    for system in systems.iter_mut().filter(|system| system.phase <= Phase::Boundary) {
+        system.finds_forces |= system.writes.iter().any(|column| needed.contains(column));
     }
 }
 
@@ -110,6 +116,7 @@ impl Plan {
                 observes: system.observes,
                 on_device: scheduled.on_device,
                 every: *every,
+                finds_forces: system.phase > Phase::Boundary && system.phase < Phase::Integrate,
                 reads: names(touched.read_columns(world)),
                 writes: names(touched.written_columns(world)),
             }
@@ -128,8 +135,10 @@ impl Plan {
         };
         let (on_cpu, on_gpu) = (passes(false), passes(true));
         let gpu = Grouping { schedule, access, on_gpu: true };
+        let mut systems: Vec<Planned> = schedule.iter().zip(access).zip(rows).map(planned).collect();
+        mark_what_forces_need(&mut systems);
         Self {
-            systems: schedule.iter().zip(access).zip(rows).map(planned).collect(),
+            systems,
             elements_then_nodes: gpu.elements_then_nodes(&on_gpu),
             nothing_else: gpu.nothing_but_elements_then_nodes(&on_gpu),
             on_cpu,

@@ -57,7 +57,8 @@ impl Simulation {
 
     /// Finds the highest frequency; whether there is one.
     pub(super) fn find(&mut self, follower: &mut Follower, seen: &mut StabilitySample) -> Result<bool, Error> {
-        bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
+        let columns = Tangent::columns();
+        bring_to_host(&mut self.world, |_, name| columns.contains(&name))?;
         let Some(limit) = limit_now(&mut self.world, ACCURACY) else { return Ok(false) };
         for block in &mut follower.trackers {
             block.remember(&self.world);

@@ -27,16 +27,17 @@ pub struct Preload {
     pub seconds: f64,
 }
 
-/// What is taken over from the static analysis; forces for those who observe the start.
-const TAKEN: [&str; 4] = [Displacement::NAME, DisplacementCompensation::NAME, InternalForce::NAME, ExternalForce::NAME];
+/// Whether a column is taken over from the static analysis node by node: where nodes are, and forces for those who
+/// observe the start.
+fn is_taken(column: &ColumnAccess) -> bool {
+    let subject = matches!(column.subject, Subject::Motion | Subject::Force);
+    subject && column.role == Role::State && column.increments != Increments::All
+}
 
 /// The same where bodies rest on springs: who touches, how deep, and what friction holds.
-const TOUCH: [&str; 6] =
-    [ToolTouch::NAME, ContactForce::NAME, SurfaceTouch::NAME, FaceTouch::NAME, TieState::NAME, SutureState::NAME];
-
-/// What the start of a motion reads, and what taking over writes.
-const WRITTEN: [&str; 5] =
-    [Displacement::NAME, DisplacementCompensation::NAME, InternalForce::NAME, ExternalForce::NAME, ViscousMemory::NAME];
+fn is_touch(column: &ColumnAccess) -> bool {
+    column.subject == Subject::Touch && column.role == Role::State
+}
 
 /// The static analysis that is to bring a scene's bodies to rest, where it wants that.
 ///
@@ -119,15 +120,13 @@ impl Simulation {
 
     /// Bodies stand where they do in another world, at rest and relaxed; guards and the stable step begin with that.
     fn stand_as(&mut self, other: &mut World) -> Result<(), Error> {
-        bring_to_host(other, |_, name| TAKEN.contains(&name))?;
+        let taken = names_of(|column| is_taken(column) || is_touch(column));
+        bring_to_host(other, |_, name| taken.contains(&name))?;
         let bodies: Vec<(Entity, Label)> = bodies(&mut self.world);
         let others = self::bodies(other);
         for (body, label) in bodies {
             let Some(&(from, _)) = others.iter().find(|(_, other)| *other == label) else { continue };
-            take::<Displacement>(&mut self.world, body, other, from, |column| &mut column.0);
-            take::<DisplacementCompensation>(&mut self.world, body, other, from, |column| &mut column.0);
-            take::<InternalForce>(&mut self.world, body, other, from, |column| &mut column.0);
-            take::<ExternalForce>(&mut self.world, body, other, from, |column| &mut column.0);
+            take(&mut self.world, body, other, from);
             take_touch(&mut self.world, body, other, from);
             if let Some(mut lost) = self.world.get_mut::<DisplacementCompensation>(body) {
                 // at rest the step is exact
@@ -135,7 +134,8 @@ impl Simulation {
             }
         }
         relax_fully(&mut self.world);
-        send_to_device(&mut self.world, |_, name| WRITTEN.contains(&name))?;
+        let remembered = names_of(|column| column.subject == Subject::Memory);
+        send_to_device(&mut self.world, |_, name| taken.contains(&name) || remembered.contains(&name))?;
         crate::observation::begin_to_guard(&mut self.world)?;
         if let Some(follower) = self.solver.follower_mut() {
             // the step was found for bodies that are not deformed
@@ -156,31 +156,30 @@ fn take_touch(world: &mut World, body: Entity, other: &World, from: Entity) {
     if other.resource::<Clock>().springs.is_none() || rows(world, body) != rows(other, from) {
         return;
     }
-    for column in all_columns().into_iter().filter(|column| TOUCH.contains(&column.name)) {
+    for column in all_columns().into_iter().filter(is_touch) {
         if let Some(bytes) = (column.bytes)(other, from) {
             (column.write)(world, body, bytes);
         }
     }
 }
 
-/// Takes over a column of vectors, of which a node may have several, node by node.
-fn take<C: Column + Clone>(
-    world: &mut World,
-    body: Entity,
-    other: &World,
-    from: Entity,
-    numbers: fn(&mut C) -> &mut Reals,
-) {
+/// Takes over columns of vectors, of which a node may have several, node by node.
+fn take(world: &mut World, body: Entity, other: &World, from: Entity) {
     let rows = |world: &World, entity| world.get::<Authoring>(entity).map(|authoring| authoring.node_rows.clone());
     let (Some(to_rows), Some(from_rows)) = (rows(world, body), rows(other, from)) else { return };
-    let Some(mut source) = other.get::<C>(from).cloned() else { return };
-    let Some(mut column) = world.get_mut::<C>(body) else { return };
-    let (source, target) = (numbers(&mut source), numbers(&mut column));
-    let nodes = to_rows.len();
-    for part in 0..target.len() / (3 * nodes.max(1)) {
-        for (&to, &from) in to_rows.iter().zip(&from_rows) {
-            target.set_vector(part * nodes + to as usize, source.vector(part * nodes + from as usize));
+    let vectors = world.get::<Displacement>(body).map_or(0, |u| u.len() / 3);
+    let vector = world.get::<Displacement>(body).map_or(0, |u| u.bytes().len()) / vectors.max(1);
+    for column in all_columns().into_iter().filter(is_taken) {
+        let (Some(source), Some(target)) = ((column.bytes)(other, from), (column.bytes)(world, body)) else { continue };
+        let mut taken = target.to_vec();
+        let of_part = vector * to_rows.len();
+        for (target, source) in taken.chunks_exact_mut(of_part.max(1)).zip(source.chunks_exact(of_part.max(1))) {
+            for (&to, &from) in to_rows.iter().zip(&from_rows) {
+                let [to, from] = [to, from].map(|row| vector * row as usize);
+                target[to..to + vector].copy_from_slice(&source[from..from + vector]);
+            }
         }
+        (column.write)(world, body, &taken);
     }
 }
 

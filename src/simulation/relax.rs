@@ -211,7 +211,8 @@ impl Relaxing {
             }
             return self.try_newton(world, passes);
         }
-        bring_to_host(world, |_, name| State::COLUMNS.contains(&name))?;
+        let columns = State::columns();
+        bring_to_host(world, |_, name| columns.contains(&name))?;
         let now = State::of(world);
         let residual = Residual::of(&now, world);
         let trouble = world.resource_scope(|world, observer: Mut<Observer>| observer.trouble(world))?;
@@ -355,7 +356,8 @@ impl Relaxing {
         relaxation.force_scale = self.force_scale * self.squeezed;
         self.before.restore(world);
         self.before.step = step;
-        send_to_device(world, |_, name| State::COLUMNS.contains(&name))?;
+        let columns = State::columns();
+        send_to_device(world, |_, name| columns.contains(&name))?;
         world.resource_mut::<Clock>().relaxation = Some(relaxation);
         self.equilibrium.setbacks += 1;
         self.next_check = (step + CHECK_STEPS).min(self.most_steps);

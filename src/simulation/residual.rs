@@ -39,16 +39,11 @@ pub(super) struct Residual {
 }
 
 impl State {
-    /// What must be on the host to see a state and to go back to one.
-    pub const COLUMNS: [&'static str; 7] = [
-        Displacement::NAME,
-        DisplacementIncrement::NAME,
-        DisplacementCompensation::NAME,
-        InternalForce::NAME,
-        ExternalForce::NAME,
-        FirstInverted::NAME,
-        FirstNonFinite::NAME,
-    ];
+    /// Names of the columns that must be on the host to see a state and to go back to one.
+    pub fn columns() -> Vec<&'static str> {
+        let subjects = [Subject::Motion, Subject::Force, Subject::Inversion, Subject::Guard];
+        names_of(|column| column.role == Role::State && subjects.contains(&column.subject))
+    }
 
     /// The present state.
     pub fn of(world: &mut World) -> Self {

@@ -116,7 +116,8 @@ impl Simulation {
     /// # Errors
     /// What the GPU says.
     pub fn stable_limit(&mut self) -> Result<Option<f64>, Error> {
-        bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
+        let columns = Tangent::columns();
+        bring_to_host(&mut self.world, |_, name| columns.contains(&name))?;
         let loads = self.solver.follower().map_or(self.facts.stability.loads, Follower::loads);
         Ok(limit_now(&mut self.world, ACCURACY).map(|limit| loads.with(limit)))
     }

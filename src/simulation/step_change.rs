@@ -13,9 +13,16 @@ use crate::observation::Observer;
 use bevy_ecs::prelude::*;
 use std::sync::Arc;
 
-/// What is read and written beside increments: where viscous memories follow, and where elements go by time.
-const READ: [&str; 5] = [Displacement::NAME, RestShape::NAME, ViscousMemory::NAME, Alive::NAME, RemovalStep::NAME];
-const WRITTEN: [&str; 2] = [ViscousMemory::NAME, RemovalStep::NAME];
+/// What is written: increments, viscous memories, which follow, and when elements go by time.
+fn is_written(column: &ColumnAccess) -> bool {
+    let follows = matches!(column.subject, Subject::Memory | Subject::Removal) && column.role == Role::State;
+    follows || column.increments != Increments::None
+}
+
+/// What is read: the same, and what memories follow from.
+fn is_read(column: &ColumnAccess) -> bool {
+    is_written(column) || matches!(column.subject, Subject::Motion | Subject::Shape)
+}
 
 impl Simulation {
     /// Takes steps of another length (s) from the present one on, whatever is stable; the scene ends with the last
@@ -44,8 +51,8 @@ impl Simulation {
         let world = &mut self.world;
         let counted: Vec<ColumnAccess> =
             all_columns().into_iter().filter(|column| column.increments != Increments::None).collect();
-        let counts = |name: &str| counted.iter().any(|column| column.name == name);
-        bring_to_host(world, |_, name| READ.contains(&name) || counts(name))?;
+        let (read, written) = (names_of(is_read), names_of(is_written));
+        bring_to_host(world, |_, name| read.contains(&name))?;
         let before = *world.resource::<Clock>();
         world.resource_scope(|world, mut observer: Mut<Observer>| observer.change_step(world, time_step, last_step))?;
         world.resource_mut::<Clock>().change_step(time_step);
@@ -59,7 +66,7 @@ impl Simulation {
             }
         }
         self.facts.steps = last_step;
-        send_to_device(world, |_, name| WRITTEN.contains(&name) || counts(name))
+        send_to_device(world, |_, name| written.contains(&name))
     }
 }
 

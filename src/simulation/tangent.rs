@@ -33,7 +33,7 @@ struct BodyForces<'w> {
 }
 
 impl<'w> Tangent<'w> {
-    /// At the present displacements. The host's columns must be up to date: see [`Tangent::COLUMNS`].
+    /// At the present displacements. The host's columns must be up to date: see [`Tangent::columns`].
     pub fn at_present(world: &'w World, bodies: &[Entity]) -> Option<Self> {
         let mut all = Vec::new();
         let mut u = Vec::new();
@@ -59,9 +59,11 @@ impl<'w> Tangent<'w> {
         (tangent.change.is_finite() && tangent.change > 0.0).then_some(tangent)
     }
 
-    /// What [`Tangent::at_present`] reads that a run changes.
-    pub const COLUMNS: [&'static str; 5] =
-        [Displacement::NAME, RestShape::NAME, ViscousMemory::NAME, Mass::NAME, InertialMass::NAME];
+    /// Names of what [`Tangent::at_present`] reads that a run changes.
+    pub fn columns() -> Vec<&'static str> {
+        let subjects = [Subject::Motion, Subject::Shape, Subject::Memory, Subject::Mass];
+        names_of(|column| subjects.contains(&column.subject) && column.increments == Increments::None)
+    }
 
     /// K x (N) for displacements x, of any length: (F(u + hx) − F(u))/h.
     pub fn times(&mut self, x: &[f64], image: &mut [f64]) {

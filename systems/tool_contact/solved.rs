@@ -92,10 +92,10 @@ impl ToolContacts {
         let numbers = self.numbers_a_tool();
         let at = At {
             place,
-            step: DVec3::from_array([0, 1, 2].map(|i| nodes.step[3 * row + i].to_f64())),
-            free: free_axes(nodes.axes[row]),
+            step: DVec3::from_array([0, 1, 2].map(|i| nodes.increments()[3 * row + i].to_f64())),
+            free: free_axes(nodes.axes()[row]),
             // at rest another one is slow to move
-            mass: nodes.mass[row].to_f64(),
+            mass: nodes.mass()[row].to_f64(),
         };
         for (tool, of_tool) in values.chunks_exact_mut(numbers).enumerate() {
             let force = DVec3::from_array([0, 1, 2].map(|i| of_tool[i].to_f64()));

@@ -37,7 +37,7 @@ mod of_nodes {
             for row in 0..nodes.rows() {
                 let toward = place - nodes.place(row);
                 let near = (-toward.length_squared() / self.reach.powi(2)).exp();
-                nodes.add_load(row, nodes.mass[row].to_f64() * strength * near * toward.normalize_or_zero());
+                nodes.add_load(row, nodes.mass()[row].to_f64() * strength * near * toward.normalize_or_zero());
             }
         }
     }

@@ -56,7 +56,7 @@ impl NodeSystem for Bond {
                 let own = nodes.own(row);
                 held.to_array().iter().zip(own).for_each(|(from, to)| *to = T::from_f64(*from));
             }
-            let pull = self.stiffness * nodes.mass[row].to_f64();
+            let pull = self.stiffness * nodes.mass()[row].to_f64();
             nodes.add_load(row, pull * (held - nodes.displacement(row)));
         }
     }

@@ -39,7 +39,7 @@ impl NodeSystem for Herd {
         for row in 0..nodes.rows() {
             let node = nodes.first + row;
             let apart = all[(node + 1) % all.len()] - all[node];
-            nodes.add_load(row, self.stiffness * nodes.mass[row].to_f64() * apart);
+            nodes.add_load(row, self.stiffness * nodes.mass()[row].to_f64() * apart);
         }
     }
 }

@@ -44,9 +44,9 @@ impl NodeSystem for Plane {
         for row in 0..nodes.rows() {
             let depth = self.height - nodes.place(row).z;
             if depth > 0.0 {
-                let speed = rate * nodes.step[3 * row + 2].to_f64();
+                let speed = rate * nodes.increments()[3 * row + 2].to_f64();
                 let push = (self.stiffness * depth - self.damping * speed).max(0.0);
-                nodes.add_load(row, DVec3::Z * (nodes.mass[row].to_f64() * push));
+                nodes.add_load(row, DVec3::Z * (nodes.mass()[row].to_f64() * push));
             }
         }
     }

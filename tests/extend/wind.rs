@@ -33,7 +33,7 @@ impl NodeSystem for Wind {
     fn act<T: SimdScalar>(&self, _: &(), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
         for row in 0..nodes.rows() {
             let share = (nodes.place(row).z / (2.0 * self.height)).clamp(0.0, 1.0);
-            nodes.add_load(row, nodes.mass[row].to_f64() * share * self.acceleration);
+            nodes.add_load(row, nodes.mass()[row].to_f64() * share * self.acceleration);
         }
     }
 }

@@ -48,7 +48,7 @@ pub fn run_all(systems: &[&str], effects: &Effects, step: u64, change: impl Fn(&
         if system.phase > sinew::systems::Phase::Integrate {
             on_host.resource_mut::<Clock>().step += 1;
         }
-        let mut body = system.host.alone(on_host);
+        let mut body = system.host.alone(&system.name, on_host);
         body.initialize(on_host);
         body.run((), on_host).unwrap().unwrap();
     }
@@ -67,7 +67,7 @@ pub fn run_in(system: &str, world: impl Fn() -> sinew::Simulation) -> Option<Pai
     let registry = Registry::default();
     let system = registry.get(system).unwrap();
     let on_host = host.world_mut();
-    let mut body = system.host.alone(on_host);
+    let mut body = system.host.alone(&system.name, on_host);
     body.initialize(on_host);
     body.run((), on_host).unwrap().unwrap();
     run_kernels(gpu, device.world_mut(), |world, buffers| system.kernels(world, buffers), 1);

@@ -31,7 +31,7 @@ impl NodeSystem for Spring {
 
     fn act<T: SimdScalar>(&self, (): &(), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
         for row in 0..nodes.rows() {
-            let stiffness = self.over_mass * nodes.mass[row].to_f64();
+            let stiffness = self.over_mass * nodes.mass()[row].to_f64();
             nodes.add_load(row, -stiffness * nodes.displacement(row));
         }
     }

@@ -61,3 +61,15 @@ fn passes_of_shipped_scenes() {
     }
     assert_eq!(now.len(), kept.len());
 }
+
+/// Threads are drawn before elements find their forces, and what observes may write all columns: which systems run at
+/// trial displacements follows from what they make for others in the step, and from nothing else.
+#[test]
+fn trial_displacements_run_what_finds_forces_and_no_more() {
+    let sutured = scene("hard/h62_suture", &["solver=Implicit(step: 0.01)"]);
+    let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
+    let explained = Simulation::new(&sutured, &options).unwrap().explain(&Registry::default()).unwrap();
+    let said = explained.solver.unwrap().of;
+    let wanted = "a pass is suture_tension, element_forces, gather + suture, at trial displacements";
+    assert!(said.iter().any(|line| line.starts_with(wanted)), "{said:#?}");
+}

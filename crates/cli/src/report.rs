@@ -5,6 +5,7 @@ use super::stability;
 use super::terminal::Paint;
 use super::wording::{bytes, count, counted, digits, quantity, speed};
 use sinew::components::GuardMemory;
+use sinew::observation::Heading;
 use sinew::{Equilibrium, ImplicitSteps, SceneFile, Summary, SurfaceContactUse};
 use std::fmt::Write;
 use std::path::Path;
@@ -342,11 +343,11 @@ fn probes(summary: &Summary, scene: &SceneFile, page: &mut Page) {
     page.rows("probes", lines.collect::<Vec<_>>());
 }
 
-/// A value under the name and unit of its column: `ux (m)` and 0.0012 are "ux 1.2 mm".
-fn named(column: &str, value: f64) -> String {
-    match column.strip_suffix(')').and_then(|column| column.split_once(" (")) {
-        Some((name, unit)) => format!("{name} {}", quantity(value, unit)),
-        None => format!("{column} {}", digits(value)),
+/// A value under the name and unit of its column: ux in m and 0.0012 are "ux 1.2 mm".
+fn named(column: &Heading, value: f64) -> String {
+    match column.unit {
+        "1" => format!("{} {}", column.name, digits(value)),
+        unit => format!("{} {}", column.name, quantity(value, unit)),
     }
 }
 

@@ -15,8 +15,10 @@ pub use element_kernel::{BlockColumns, PatchInterior, kernel_effects, run_block,
 pub use guard_kernel::{BlockSums, GuardColumns, run_guard};
 pub use law::BlockLaw;
 pub use law_copies::{LawCopies, LawParameters, PerCopyLaw};
-pub(crate) use node_kernel::loads;
-pub use node_kernel::{Foreseen, IntegrationCoefficients, NodeColumns, NodeShare, OwnRows, Touches, move_nodes};
+pub(crate) use node_kernel::Asked;
+pub use node_kernel::{
+    Declared, Foreseen, IntegrationCoefficients, NodeColumns, NodeShare, OwnRows, Touches, Undeclared, move_nodes,
+};
 pub use own_kernels::OwnKernels;
 pub use strain_kernel::{Kept, Strain, StrainColumns, Visit, strains};
 pub(crate) use strain_kernel::{sizes, with_identity};

@@ -1,12 +1,14 @@
 //! Central differences for nodes of a body, a register full at a time.
 
+mod declared;
 mod integration_coefficients;
 mod node_columns;
 mod one_by_one;
 mod own_rows;
 
+pub(crate) use declared::Asked;
+pub use declared::{Declared, Undeclared};
 pub use integration_coefficients::{Foreseen, IntegrationCoefficients};
-pub(crate) use node_columns::loads;
 pub use node_columns::{NodeColumns, Touches};
 pub use own_rows::{NodeShare, OwnRows};
 
@@ -22,6 +24,11 @@ pub fn move_nodes<T: SimdScalar>(
     columns: &mut NodeColumns<'_, T>,
     coefficients: &IntegrationCoefficients<T>,
 ) -> Option<u32> {
+    for column in [Asked::Inertia, Asked::Internal, Asked::External, Asked::Axes, Asked::Damping] {
+        columns.reads(column);
+    }
+    columns.writes(Asked::Displacement);
+    columns.writes(Asked::Increment);
     cpu.dispatch_widest(Task { columns, coefficients }).map(|row| row as u32)
 }
 

@@ -24,32 +24,32 @@ pub use tube::tube_mesh;
 use super::{CellKind, MeshError};
 use serde::{Deserialize, Serialize};
 
-/// Hands the list of element types to a macro, behind a `$` for macros that make macros: name, kind of cells, and stem
-/// of the shader.
+/// Hands the list of element types to a macro, behind a `$` for macros that make macros: stem of its file, name, kind
+/// of cells, and stem of the shader.
 macro_rules! each_element_kind {
     ($dollar:tt $then:ident) => {
         $then! {
             $dollar
             /// Four-node tetrahedra: quick, and stiff near incompressibility (locking).
             #[default]
-            Tet4: Tet4, "tet4";
+            tet4: Tet4 of Tet4, "tet4";
             /// Four-node tetrahedra with averaged nodal pressure: they hardly lock.
-            Tet4NodalPressure: Tet4, "tet4";
+            tet4_nodal_pressure: Tet4NodalPressure of Tet4, "tet4";
             /// Eight-node hexahedra with one point and hourglass control: quick, and they do not lock.
-            Hex8: Hex8, "hex8";
+            hex8: Hex8 of Hex8, "hex8";
             /// Eight-node hexahedra with eight points and mean dilatation: accurate, and slower.
-            Hex8MeanDilatation: Hex8, "hex8_mean_dilatation";
+            hex8_mean_dilatation: Hex8MeanDilatation of Hex8, "hex8_mean_dilatation";
             /// Six-node wedges with six points and mean dilatation: what meshes of layers are made of.
-            Wedge6: Wedge6, "wedge6";
+            wedge6: Wedge6 of Wedge6, "wedge6";
             /// Ten-node tetrahedra with four points and mean dilatation: accurate on meshes of tetrahedra.
-            Tet10: Tet10, "tet10";
+            tet10: Tet10 of Tet10, "tet10";
         }
     };
 }
 pub(crate) use each_element_kind;
 
 macro_rules! element_kinds {
-    ($dollar:tt $($(#[$about:meta])* $kind:ident: $cell:ident, $shader:literal;)*) => {
+    ($dollar:tt $($(#[$about:meta])* $file:ident: $kind:ident of $cell:ident, $shader:literal;)*) => {
         /// Kinds of elements. Generators make six tetrahedra, two wedges or one hexahedron of a cell.
         #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq, PartialOrd, Ord)]
         pub enum ElementKind {

@@ -239,8 +239,8 @@ impl Naming<'_> {
         }
         for (number, load) in content.loads.iter_mut().enumerate() {
             let path = self.path.name("loads").index(number);
-            let LoadPartsMut { on, curve, .. } = load.parts_mut();
-            let Some((body, _)) = on else {
+            let LoadPartsMut { body, on, curve, .. } = load.parts_mut();
+            let Some(_) = on else {
                 let note = "it acts on all that the scene holds, and does not turn with a part; with `body: \"part.name\"` \
                             on one body only";
                 let message = format!("{} belongs into the whole scene, not into a part", load.parts().name);

@@ -2,8 +2,8 @@
 
 use crate::mesh::{angles_about_axes, rotation_about_axes};
 use crate::scene::schema::{
-    Amplitude, Attachment, Axis, Body, Constraint, Contact, Direction, Free, Load, LoadPartsMut, Material, Part, Probe,
-    Quantity, Removal, Select, Start, Suction, Tool, When,
+    Attachment, Axis, Body, Constraint, Contact, Direction, Free, Load, LoadPartsMut, Material, Part, Probe, Quantity,
+    Removal, Select, Start, Suction, Tool, When,
 };
 use glam::{DMat3, DQuat, DVec3};
 
@@ -201,10 +201,10 @@ impl Placement {
 
     pub fn load(&self, load: &mut Load) {
         let LoadPartsMut { on, amplitude, .. } = load.parts_mut();
-        if let Some((_, on)) = on {
+        if let Some(on) = on {
             self.select(on);
         }
-        if let Amplitude::Vector(vector) = amplitude {
+        if let Some(vector) = amplitude.direction() {
             self.direction(vector);
         }
     }

@@ -26,7 +26,8 @@ pub use action::{Axis, Constraint, Curve, Removal, Threshold, When};
 pub use analysis::{Analysis, ArcLength, EquilibriumSearch, InitialState, SearchMethod};
 pub use attachment::{Attachment, Point};
 pub use body::{Body, MeshSource, Region, SkinFile, SkinFormat, Start};
-pub use load::{Load, Share};
+pub(crate) use load::each_load;
+pub use load::{LOADS, Load, Share};
 pub use material::{
     Direction, ELASTIC_LAWS, ExponentialFibres, Fibres, Inversion, Material, OwnLaw, Prony, PronyTerm,
     ViscousIntegrator, comparable_laws, laws_for_large_strains, laws_that_recover,

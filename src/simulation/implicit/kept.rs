@@ -3,26 +3,11 @@
 use crate::components::*;
 use bevy_ecs::prelude::*;
 
-/// Columns that the search for a step writes over.
-const WRITTEN: [&str; 6] = [
-    Displacement::NAME,
-    DisplacementIncrement::NAME,
-    InternalForce::NAME,
-    ExternalForce::NAME,
-    ViscousMemory::NAME,
-    ToolHold::NAME,
-];
-
-/// What the search for rest writes beside, in the steps in which loads grow: what touches carries on.
-const NOTED: [&str; 7] = [
-    ToolTouch::NAME,
-    ContactForce::NAME,
-    SurfaceTouch::NAME,
-    FaceTouch::NAME,
-    TieState::NAME,
-    SutureState::NAME,
-    SutureForce::NAME,
-];
+/// Whether the search for a step writes over a column.
+fn is_tried(column: &ColumnAccess) -> bool {
+    let subjects = [Subject::Motion, Subject::Force, Subject::Memory, Subject::Grip];
+    column.role == Role::State && subjects.contains(&column.subject)
+}
 
 /// These columns as they were at the beginning of the step.
 #[derive(Default)]
@@ -41,8 +26,8 @@ impl Kept {
     pub fn keep(&mut self, world: &mut World) {
         if self.columns.is_empty() {
             let of_rest = self.of_rest;
-            let is_written = |name: &str| WRITTEN.contains(&name) || of_rest && NOTED.contains(&name);
-            self.columns = find(world, is_written);
+            // loads grow in steps there: what touches carries on
+            self.columns = find(world, |column| is_tried(column) || of_rest && column.subject == Subject::Touch);
         }
         for (column, entity, bytes) in &mut self.columns {
             bytes.clear();
@@ -50,9 +35,9 @@ impl Kept {
         }
     }
 
-    /// Puts those of some names back.
-    pub fn put_back(&self, world: &mut World, which: impl Fn(&str) -> bool) {
-        for (column, entity, bytes) in self.columns.iter().filter(|(column, ..)| which(column.name)) {
+    /// Puts some of them back.
+    pub fn put_back(&self, world: &mut World, which: impl Fn(&ColumnAccess) -> bool) {
+        for (column, entity, bytes) in self.columns.iter().filter(|(column, ..)| which(column)) {
             (column.write)(world, *entity, bytes);
         }
     }
@@ -64,14 +49,14 @@ impl Kept {
 
     /// Whether viscous memories are among them.
     pub fn has_memories(&self) -> bool {
-        self.columns.iter().any(|(column, ..)| column.name == ViscousMemory::NAME)
+        self.columns.iter().any(|(column, ..)| column.subject == Subject::Memory)
     }
 }
 
-fn find(world: &mut World, is_written: impl Fn(&str) -> bool) -> Vec<(ColumnAccess, Entity, Vec<u8>)> {
+fn find(world: &mut World, is_written: impl Fn(&ColumnAccess) -> bool) -> Vec<(ColumnAccess, Entity, Vec<u8>)> {
     let mut all = world.query_filtered::<Entity, Or<(With<Body>, With<Block>)>>();
     let entities: Vec<Entity> = all.iter(world).collect();
-    let columns: Vec<ColumnAccess> = all_columns().into_iter().filter(|column| is_written(column.name)).collect();
+    let columns: Vec<ColumnAccess> = all_columns().into_iter().filter(is_written).collect();
     let mut found = Vec::new();
     for &entity in &entities {
         let own = columns.iter().filter(|column| (column.bytes)(world, entity).is_some());

@@ -186,7 +186,7 @@ fn keep_forces(
     if kept.has_memories() || notes || touches || trial.elsewhere {
         set_trying(trial.world, false);
         // forces that were no numbers are in them
-        kept.put_back(trial.world, |name| name == ViscousMemory::NAME);
+        kept.put_back(trial.world, |column| column.subject == Subject::Memory);
         let Workspace { w, steps, net, .. } = space;
         let at = steps_to(formula, h, motion, w, steps, trial);
         trial.noted_forces(w, at, net)?;

@@ -88,7 +88,7 @@ impl NodeSystem for Weight {
 
     fn act<T: SimdScalar>(&self, (): &(), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
         for row in 0..nodes.rows() {
-            nodes.add_load(row, DVec3::new(0.0, 0.0, nodes.mass[row].to_f64() * self.acceleration));
+            nodes.add_load(row, DVec3::new(0.0, 0.0, nodes.mass()[row].to_f64() * self.acceleration));
         }
     }
 }

@@ -4,14 +4,14 @@ use super::manifest::Manifest;
 use super::{Done, Part, SweepError};
 use serde_json::Value;
 use sinew::SceneFile;
-use sinew::observation::header;
+use sinew::observation::{Heading, header};
 use std::path::{Path, PathBuf};
 
 /// What is kept of each variant: numbers of probes, once or at some times.
 #[derive(Clone, Debug, Default)]
 pub struct Kept {
     /// Each probe with the columns of its numbers.
-    probes: Vec<(String, Vec<&'static str>)>,
+    probes: Vec<(String, Vec<String>)>,
     /// When they are asked (s); at the end where there are none.
     at: Vec<f64>,
 }
@@ -25,7 +25,7 @@ impl Kept {
         let probes = &scene.scene.probes;
         let columns = keep.iter().map(|name| match probes.get(name) {
             // of its table, less the time
-            Some(probe) => Ok((name.clone(), header(&probe.what).split_off(1))),
+            Some(probe) => Ok((name.clone(), header(&probe.what).iter().skip(1).map(Heading::to_string).collect())),
             None => {
                 let there: Vec<&str> = probes.keys().map(String::as_str).collect();
                 let there = if there.is_empty() { "none".into() } else { there.join(", ") };
@@ -44,7 +44,7 @@ impl Kept {
     }
 
     /// Each probe with its columns.
-    pub(super) fn probes(&self) -> &[(String, Vec<&'static str>)] {
+    pub(super) fn probes(&self) -> &[(String, Vec<String>)] {
         &self.probes
     }
 

@@ -1,5 +1,6 @@
 //! What moves nodes, and how it is shared out among tasks.
 
+use super::declared::{Declared, Undeclared};
 use super::integration_coefficients::{Foreseen, IntegrationCoefficients};
 use super::own_rows::OwnRows;
 use crate::components::{GROUP_ROWS, WORK_NUMBERS};
@@ -7,47 +8,53 @@ use crate::math::{Scalar, SimdScalar, vector_at};
 use glam::DVec3;
 use std::sync::atomic::AtomicU32;
 
-/// Some rows of a body's node columns, which no other task has; layouts as in [`components`](crate::components).
+/// Some rows of a body's node columns, which no other task has; layouts as in [`components`](crate::components). A node
+/// system asks for those that are among its [columns](crate::systems::NodeSystem::Columns): asking for another ends the
+/// run with an error that names both, for the system might share a pass with what writes it.
 pub struct NodeColumns<'a, T> {
     /// Row of the first node.
     pub first: usize,
     /// Where nodes are at rest (m).
     pub rest: &'a [DVec3],
     /// Forces of all elements of the body (N), of which [`Corners`](crate::components::Corners) tells whose they are.
-    pub element_force: &'a [T],
+    pub(crate) element_force: &'a [T],
     /// The lowest row of a node whose displacement is no longer finite; `u32::MAX`: none.
-    pub non_finite: &'a AtomicU32,
+    pub(crate) non_finite: &'a AtomicU32,
+    /// What a system asked for that it has not declared.
+    pub(crate) undeclared: &'a Undeclared,
+    /// What the system has declared whose turn it is.
+    pub(crate) declared: Declared,
     /// Mass that weighs (kg).
-    pub mass: &'a [T],
+    pub(crate) mass: &'a [T],
     /// Mass that is slow to move (kg): in a static analysis another one.
-    pub inertia: &'a [T],
+    pub(crate) inertia: &'a [T],
     /// Forces of elements (N).
-    pub internal: &'a mut [T],
+    pub(crate) internal: &'a mut [T],
     /// Loads (N).
-    pub external: Option<&'a mut [T]>,
+    pub(crate) external: Option<&'a mut [T]>,
     /// Which axes are constrained, as bits.
-    pub axes: &'a [u32],
+    pub(crate) axes: &'a [u32],
     /// Damping coefficients (kg/s).
-    pub damping: Option<&'a [T]>,
+    pub(crate) damping: Option<&'a [T]>,
     /// Displacements (m).
-    pub u: &'a mut [T],
+    pub(crate) u: &'a mut [T],
     /// Steps (m).
-    pub step: &'a mut [T],
+    pub(crate) step: &'a mut [T],
     /// What rounding left out of displacements, and of steps.
-    pub compensation: Option<[&'a mut [T]; 2]>,
+    pub(crate) compensation: Option<[&'a mut [T]; 2]>,
     /// Work counted.
-    pub work: Option<&'a mut [T]>,
+    pub(crate) work: Option<&'a mut [T]>,
     /// Work against internal forces: a sum and its remainder for each row that is a multiple of [`GROUP_ROWS`], and one
     /// at the end of all; none where the whole work is accumulated.
-    pub internal_work: &'a mut [f32],
+    pub(crate) internal_work: &'a mut [f32],
     /// The last steps (m) along prescribed axes; none where nothing is prescribed or the whole work is accumulated.
-    pub previous_prescribed: &'a mut [f32],
+    pub(crate) previous_prescribed: &'a mut [f32],
     /// What tools do to those that they may touch; none where there are no tools.
-    pub touches: Option<Touches<'a, T>>,
+    pub(crate) touches: Option<Touches<'a, T>>,
     /// What tools do to those that they may hold; none where none may.
-    pub holds: Option<Touches<'a, T>>,
+    pub(crate) holds: Option<Touches<'a, T>>,
     /// What systems have for themselves.
-    pub own: OwnRows<'a, T>,
+    pub(crate) own: OwnRows<'a, T>,
 }
 
 /// What tools do to some nodes.
@@ -87,6 +94,8 @@ impl<T: SimdScalar> NodeColumns<'_, T> {
                 rest: self.rest,
                 element_force: self.element_force,
                 non_finite: self.non_finite,
+                undeclared: self.undeclared,
+                declared: self.declared,
                 mass: self.mass,
                 inertia: self.inertia,
                 internal,
@@ -110,7 +119,7 @@ impl<T: SimdScalar> NodeColumns<'_, T> {
 impl<T: Scalar> NodeColumns<'_, T> {
     /// Displacement of one of these nodes (m).
     pub fn displacement(&self, row: usize) -> DVec3 {
-        vector_at(self.u, 3 * row)
+        vector_at(self.displacements(), 3 * row)
     }
 
     /// Where one of these nodes is (m).
@@ -121,15 +130,15 @@ impl<T: Scalar> NodeColumns<'_, T> {
     /// Where `integrate` will take one of these nodes, from what its loads are by now.
     pub fn foresee(&self, coefficients: &IntegrationCoefficients<f64>, row: usize) -> Foreseen {
         let vector = |all: &[T]| vector_at(all, 3 * row);
-        let force = self.external.as_deref().map_or(DVec3::ZERO, vector) - vector(self.internal);
-        let damping = self.damping.map_or(0.0, |all| all[row].to_f64());
-        coefficients.foresee(self.inertia[row].to_f64(), damping, self.axes[row], vector(self.step), force)
+        let force = self.external_force().map_or(DVec3::ZERO, vector) - vector(self.internal_force());
+        let damping = self.damping().map_or(0.0, |all| all[row].to_f64());
+        coefficients.foresee(self.inertia()[row].to_f64(), damping, self.axes()[row], vector(self.increments()), force)
     }
 
     /// Adds to the load on one of these nodes (N), which a system may that has `&mut ExternalForce` among its
     /// [columns](crate::systems::NodeSystem::Columns).
     pub fn add_load(&mut self, row: usize, force: DVec3) {
-        if let Some(external) = loads(&mut self.external) {
+        if let Some(external) = self.external_force_mut() {
             for (load, part) in external[3 * row..3 * row + 3].iter_mut().zip(force.to_array()) {
                 *load = T::from_f64(load.to_f64() + part);
             }
@@ -152,6 +161,8 @@ impl<'a, T> NodeColumns<'a, T> {
             rest: first(&mut self.rest, rows),
             element_force: self.element_force,
             non_finite: self.non_finite,
+            undeclared: self.undeclared,
+            declared: self.declared,
             mass: first(&mut self.mass, rows),
             inertia: first(&mut self.inertia, rows),
             internal: first_mut(&mut self.internal, 3 * rows),
@@ -187,12 +198,6 @@ impl<'a, T> NodeColumns<'a, T> {
         let place = self.places_until(row).min((self.internal_work.len() / 2).checked_sub(1)?);
         Some(&mut self.internal_work[2 * place..2 * place + 2])
     }
-}
-
-/// The loads on some nodes (N), which are there for all that say that they write them.
-pub(crate) fn loads<'n, T>(external: &'n mut Option<&mut [T]>) -> Option<&'n mut [T]> {
-    debug_assert!(external.is_some(), "a system adds loads that has no `&mut ExternalForce` among its columns");
-    external.as_deref_mut()
 }
 
 /// Rows of a body in tasks: see [`NodeColumns::tasks`].

@@ -1,5 +1,6 @@
 //! What a node system has of the nodes for itself: those that it has chosen, and numbers of its own.
 
+use super::declared::Declared;
 use super::node_columns::{NodeColumns, first, first_mut};
 
 /// What a node system has of its body's columns for itself.
@@ -42,9 +43,11 @@ impl<'a, T> OwnRows<'a, T> {
 }
 
 impl<'a, T> NodeColumns<'a, T> {
-    /// It is the turn of a system that has such a share.
-    pub(crate) fn turn_to(&mut self, share: NodeShare) {
+    /// It is the turn of a system that has such a share and has declared so much.
+    #[inline(always)]
+    pub(crate) fn turn_to(&mut self, share: NodeShare, declared: Declared) {
         self.own.share = share;
+        self.declared = declared;
     }
 
     /// Those of these nodes that the system has [chosen](crate::systems::NodeSystem::choose), ascending; all where it

@@ -11,36 +11,29 @@ use crate::scene::schema::Inversion;
 use crate::systems::Phase;
 use bevy_ecs::prelude::*;
 
-/// What a step writes on the host at its end.
-const WRITTEN: [&str; 4] =
-    [Displacement::NAME, DisplacementIncrement::NAME, DisplacementCompensation::NAME, FirstInverted::NAME];
-/// What a step begins with on the host that kernels may have written.
-const READ: [&str; 6] = [
-    Displacement::NAME,
-    DisplacementIncrement::NAME,
-    DisplacementCompensation::NAME,
-    ConstrainedAxes::NAME,
-    Alive::NAME,
-    FirstInverted::NAME,
-];
-/// What changes besides where elements have gone.
-const OF_ELEMENTS_LEFT: [&str; 3] = [Mass::NAME, DampingCoefficient::NAME, RestShape::NAME];
+/// Names of the columns of a state that are about something.
+fn state_about(subjects: &[Subject]) -> Vec<&'static str> {
+    names_of(|column| column.role != Role::Scratch && subjects.contains(&column.subject))
+}
 
 /// Brings the state to the host that a step begins with.
 pub(in super::super) fn bring_state(world: &mut World) -> Result<(), Error> {
     let mut alive = world.query::<&Alive>();
     let mut left = |world: &World| alive.iter(world).flat_map(|alive| &alive.0).filter(|&&alive| alive != 0).count();
     let before = left(world);
-    bring_to_host(world, |_, name| READ.contains(&name))?;
+    let read = state_about(&[Subject::Motion, Subject::Constraint, Subject::Removal, Subject::Inversion]);
+    bring_to_host(world, |_, name| read.contains(&name))?;
     if left(world) != before {
-        bring_to_host(world, |_, name| OF_ELEMENTS_LEFT.contains(&name))?;
+        let of_elements_left = state_about(&[Subject::Mass, Subject::Shape]);
+        bring_to_host(world, |_, name| of_elements_left.contains(&name))?;
     }
     Ok(())
 }
 
 /// Sends the state to the device that a step has come to, or has gone back to.
 pub(in super::super) fn send_state(world: &mut World) -> Result<(), Error> {
-    overwrite_on_device(world, |_, name| WRITTEN.contains(&name))
+    let written = state_about(&[Subject::Motion, Subject::Inversion]);
+    overwrite_on_device(world, |_, name| written.contains(&name))
 }
 
 impl Trial<'_> {
@@ -83,7 +76,7 @@ impl Trial<'_> {
         let moves = |name| name == Displacement::NAME || with_velocities && name == DisplacementIncrement::NAME;
         overwrite_on_device(self.world, |_, name| moves(name) || name == FirstInverted::NAME)?;
         self.run_kernels(|pass| pass.finds_forces)?;
-        let found = [InternalForce::NAME, ExternalForce::NAME, FirstInverted::NAME];
+        let found = state_about(&[Subject::Force, Subject::Inversion]);
         bring_to_host(self.world, |_, name| found.contains(&name))?;
         if trying {
             let inverted = must_not_be_inverted(self.world);

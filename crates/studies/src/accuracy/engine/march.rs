@@ -74,9 +74,8 @@ impl Sampling {
 /// The name and the unit of a probe's component: `tip.uz` and `m`.
 fn column(probe: &str, what: &Quantity, component: usize) -> (String, String) {
     let header = sinew::observation::header(what);
-    let text = header.get(component + 1).copied().unwrap_or_default();
-    let (name, unit) = text.strip_suffix(')').and_then(|text| text.split_once(" (")).unwrap_or((text, ""));
-    (format!("{probe}.{name}"), unit.to_string())
+    let (name, unit) = header.get(component + 1).map_or(("", "1"), |of| (of.name, of.unit));
+    (format!("{probe}.{name}"), if unit == "1" { String::new() } else { unit.to_string() })
 }
 
 /// Why an error means that there is no solution.

@@ -16,6 +16,8 @@ fn every_task_has_a_place_for_its_work() {
             rest: &[],
             element_force: &[],
             non_finite: &AtomicU32::new(u32::MAX),
+            undeclared: &Undeclared::default(),
+            declared: Declared::default(),
             mass: &read,
             inertia: &read,
             internal: part(),
