@@ -73,6 +73,7 @@ impl Newton<'_, '_> {
         let moves = self.moves();
         let ends = self.longest();
         let (mut share, mut bracket, mut halvings) = (ends, Bracket::from(begins, ends), 0);
+        let mut sound = true;
         for look in 0..=MOST_LOOKS {
             if look > MOST_HALVINGS && !bracket.crosses() {
                 break;
@@ -84,7 +85,8 @@ impl Newton<'_, '_> {
             }
             let tried = self.forces_at_w()?;
             let mut work = f64::NAN;
-            if tried.sound {
+            sound = tried.sound;
+            if sound {
                 let now = self.residual();
                 work = self.sums.dot(&self.space.p, &self.space.g);
                 let descends = self.descends(&way, (share, work), touches.then_some(&bracket));
@@ -103,7 +105,8 @@ impl Newton<'_, '_> {
         let Workspace { w, from, .. } = &mut *self.space;
         w.copy_from_slice(from);
         Err(Lost::Because(format!(
-            "no descent after {halvings} halvings of a Newton step, at a residual of {size:.3e} N"
+            "no descent after {halvings} halvings of a Newton step, at a residual of {size:.3e} N{}",
+            if sound { "" } else { ": beyond it forces are no numbers, or elements are turned inside out" }
         )))
     }
 
