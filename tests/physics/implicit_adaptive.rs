@@ -32,21 +32,22 @@ fn off(mut simulation: Simulation) -> (f64, ImplicitSteps) {
     (worst / amplitude(), simulation.implicit_steps().unwrap())
 }
 
-const FRAMES: u32 = 30;
+const FRAMES: u32 = 13;
 
 fn chosen(scheme: &str, tolerance: f64) -> String {
     format!(
-        "Implicit(scheme: {scheme}, step: 0.01, newton: 8, tolerance: 1e-12,
+        "Implicit(scheme: {scheme}, step: 0.01, newton: 8, tolerance: 1e-10,
             adaptive: (tolerance: {tolerance}, displacement: {}))",
         amplitude()
     )
 }
 
 /// A decade of the tolerance is one of the error, to what the controller leaves: it holds estimates between a half of
-/// the tolerance and all of it, so that of two errors each may be twice too small.
+/// the tolerance and all of it, so that of two errors each may be twice too small. (Of implicit Euler where little of
+/// the amplitude is damped: what is gone cannot be off.)
 #[test]
 fn errors_fall_in_proportion_to_the_tolerance() {
-    for (scheme, tolerances) in [("Euler", [3e-2, 3e-3]), ("GeneralizedAlpha()", [1e-2, 1e-3])] {
+    for (scheme, tolerances) in [("Euler", [4e-3, 4e-4]), ("GeneralizedAlpha()", [3e-4, 3e-5])] {
         let found = tolerances.map(|tolerance| off(oscillator(&chosen(scheme, tolerance), "")));
         println!("{scheme}: {found:?}");
         for ((error, took), tolerance) in found.iter().zip(tolerances) {
@@ -64,7 +65,7 @@ fn errors_are_those_of_the_tolerance_on_a_gpu() {
         return;
     }
     let gpu = Options { backend: BackendChoice::Gpu, precision: Precision::F32, threads: 1, ..Options::default() };
-    let solver = chosen("GeneralizedAlpha()", 1e-2).replace("1e-12", "1e-5");
+    let solver = chosen("GeneralizedAlpha()", 1e-2).replace("1e-10", "1e-5");
     let (of_gpu, took) = off(oscillator_on(&solver, "", &gpu));
     let (of_cpu, _) = off(oscillator_on(&solver, "", &options(Precision::F32, 1)));
     println!("{of_gpu}, {of_cpu} on the CPU, {took:?}");
@@ -192,7 +193,7 @@ fn steps_that_are_taken_back_leave_nothing() {
         told.set_time_step(chosen.time() - before).unwrap();
         told.advance(1).unwrap();
     }
-    assert!(chosen.implicit_steps().unwrap().steps_rejected > 2, "{:?}", chosen.implicit_steps());
+    assert!(chosen.implicit_steps().unwrap().steps_rejected > 1, "{:?}", chosen.implicit_steps());
     let [a, b] = [&mut chosen, &mut told].map(|simulation| simulation.displacements("b").unwrap());
     let largest = b.iter().fold(0.0_f64, |largest, u| largest.max(u.length()));
     for (a, b) in a.iter().zip(&b) {

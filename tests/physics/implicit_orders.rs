@@ -57,7 +57,7 @@ fn errors_halve_or_quarter_with_the_step_by_the_order_of_the_scheme() {
         ("scheme: GeneralizedAlpha(high_frequencies: 0.2), tolerance: 1e-12", 2),
         ("scheme: GeneralizedAlpha(high_frequencies: 1), newton: 1, tolerance: 1e-12", 2),
     ] {
-        let errors = [200, 400, 800].map(|steps| off(solver, steps));
+        let errors = [100, 200, 400].map(|steps| off(solver, steps));
         println!("{solver}: {errors:?}");
         // what is left of the next order is a part of ωh
         for pair in errors.windows(2) {

@@ -37,6 +37,7 @@ mod implicit_adaptive;
 mod implicit_device;
 mod implicit_forms;
 mod implicit_lens;
+mod implicit_memory;
 mod implicit_orders;
 mod implicit_tetrahedron;
 mod inputs;

@@ -56,7 +56,8 @@ impl Grasped {
             let of_axis = |i: usize| {
                 let axis = first + i;
                 let velocity = motion.arrival(formula, axis, h, space.w[axis]).0;
-                let inertial = motion.mass[axis] * (velocity - motion.v[axis]) / h + motion.damping[axis] * velocity;
+                let (mass, damping) = (motion.mass[axis / 3], motion.damping[axis / 3]);
+                let inertial = mass * (velocity - motion.v[axis]) / h + damping * velocity;
                 let inertial = if formula.is_of_rest() { 0.0 } else { inertial };
                 if own[i] { space.net[axis] + inertial } else { 0.0 }
             };

@@ -71,6 +71,7 @@ impl Iterations {
             sums: &self.sums,
             on_device: &mut self.on_device,
             h,
+            beyond: false,
             farthest: None,
         }
     }
@@ -84,7 +85,7 @@ impl Iterations {
     /// What the end of a step of h comes to, in the workspace; and whether it is taken, by what chooses steps.
     pub fn takes(&mut self, control: Option<&mut StepControl>, h: f64, found: &Found) -> bool {
         let Self { settings: Settings { formula, newton, budget, .. }, motion, space, .. } = self;
-        let Workspace { w, step, acceleration, .. } = space;
+        let Workspace { w, right: step, g: acceleration, .. } = space;
         for axis in 0..w.len() {
             let (velocity, of_axis) = motion.arrival(formula, axis, h, w[axis]);
             (step[axis], acceleration[axis]) = (h * velocity, of_axis);
@@ -141,7 +142,7 @@ impl Iterations {
         for axis in 0..axes.len() {
             let is_free = motion.free[axis];
             space.inertia[axis] =
-                if is_free { formula.inertia(h, motion.mass[axis], motion.damping[axis]) } else { 0.0 };
+                if is_free { formula.inertia(h, motion.mass[axis / 3], motion.damping[axis / 3]) } else { 0.0 };
         }
         preconditioner.follow(&Operator {
             world,

@@ -74,9 +74,6 @@ pub(super) struct Found {
     pub remaining: f64,
 }
 
-/// How many there are.
-const VECTORS: usize = 13;
-
 /// Vectors over all axes that Newton's iterations work with.
 #[derive(Default)]
 pub(super) struct Workspace {
@@ -89,33 +86,32 @@ pub(super) struct Workspace {
     pub to_go: Vec<f64>,
     /// F − R at w (N).
     pub net: Vec<f64>,
-    /// The residual g (N) at w.
-    g: Vec<f64>,
-    right: Vec<f64>,
+    /// The residual g (N) at w; of a step that is found the acceleration at its end (m/s²).
+    pub g: Vec<f64>,
+    /// The right-hand side of a linear system (N); of a step that is found h v at its end (m).
+    pub right: Vec<f64>,
     p: Vec<f64>,
-    from: Vec<f64>,
+    /// Where a product looks, and where a line search began (m).
     elsewhere: Vec<f64>,
+    /// Where loads look at them, displacements in a step (m).
     pub steps: Vec<f64>,
-    /// What a step comes to: h v (m), and the acceleration (m/s²).
-    pub step: Vec<f64>,
-    pub acceleration: Vec<f64>,
     vectors: Vectors,
 }
 
 impl Workspace {
     /// Bytes of all vectors, those of conjugate gradients with them.
     pub fn bytes(&self) -> usize {
-        (VECTORS + Vectors::COUNT) * size_of_val(&self.w[..])
+        let Self { inertia, constant, w, to_go, net, g, right, p, elsewhere, steps, vectors } = self;
+        let own = [inertia, constant, w, to_go, net, g, right, p, elsewhere, steps];
+        own.into_iter().map(|vector| size_of_val(&vector[..])).sum::<usize>() + vectors.bytes()
     }
 
     pub fn resize(&mut self, length: usize) {
-        let Self { inertia, constant, w, to_go, net, g, right, p, from, elsewhere, steps, step, acceleration, .. } =
-            self;
-        let all: [_; VECTORS] =
-            [inertia, constant, w, to_go, net, g, right, p, from, elsewhere, steps, step, acceleration];
-        for vector in all {
+        let Self { inertia, constant, w, to_go, net, g, right, p, elsewhere, steps: _, vectors } = self;
+        for vector in [inertia, constant, w, to_go, net, g, right, p, elsewhere] {
             vector.resize(length, 0.0);
         }
+        vectors.resize(length);
     }
 }
 
@@ -131,6 +127,8 @@ pub(super) struct Newton<'a, 'w> {
     pub on_device: &'a mut Option<OnDevice>,
     /// The length of the step (s); 1 in statics, where nothing has a velocity.
     pub h: f64,
+    /// Whether forces on the way were no numbers, or elements turned inside out.
+    pub beyond: bool,
     /// How far axes may go in an iteration (m), where who meets whom is looked for in each of them; at rest.
     pub farthest: Option<f64>,
 }
@@ -171,9 +169,10 @@ impl Newton<'_, '_> {
                 return Ok(self.left_of([first, size], solved, remaining));
             }
             if iterations >= self.settings.newton.max(MOST_MOVES) {
-                let what =
-                    format!("what is moved as told is not where it should be after {iterations} Newton iterations");
-                return Err(Lost::Because(what));
+                return Err(Lost::Because(format!(
+                    "what is moved as told is not where it should be after {iterations} Newton iterations{}",
+                    self.what_is_beyond()
+                )));
             }
             let forcing = match (self.settings.newton, iterations) {
                 (1, _) => self.settings.tolerance,
@@ -193,6 +192,10 @@ impl Newton<'_, '_> {
             remaining = self.sums.norm(&self.space.p) * size / before;
             iterations += 1;
         }
+    }
+
+    fn what_is_beyond(&self) -> &'static str {
+        if self.beyond { ": farther on forces are no numbers, or elements are turned inside out" } else { "" }
     }
 
     /// Whether held axes have not arrived yet.

@@ -12,7 +12,7 @@ use super::kept::Kept;
 use super::newton::{Found, Lost, Settings, Workspace};
 use super::report::ImplicitSteps;
 use super::springs::Springs;
-use super::step_control::{StepControl, error_and_reach};
+use super::step_control::StepControl;
 use super::trial::Trial;
 use super::work::Works;
 use crate::components::*;
@@ -86,7 +86,14 @@ impl Implicit {
             _ => format!("at most {newton} Newton iterations, to a residual of {tolerance} of all forces"),
         };
         let lengths = self.control.as_ref().map_or(String::new(), |control| format!("; {}", control.in_words()));
-        self.iterations.in_use(format!("{scheme}: {iterations}{lengths}"), &self.axes, world, passes)
+        if let Some(works) = &mut self.works {
+            works.begin(world, &self.axes);
+        }
+        let of_works = self.works.as_ref().map_or(0, Works::bytes);
+        let mut in_use =
+            self.iterations.in_use(format!("{scheme}: {iterations}{lengths}"), &self.axes, world, passes);
+        in_use.held.push(("forces at the beginning of a step, for energies", of_works as u64));
+        in_use
     }
 
     /// Takes the step that begins at the clock's, up to the loads at its end. Where that is not found, or its error is
@@ -167,7 +174,7 @@ impl Implicit {
             let Iterations { motion, space, kept, .. } = &mut *iterations;
             keep_forces(&mut trial, (&formula, h, motion), kept, space)?;
             grasped.note(trial.world, (&formula, h, motion), space);
-            let Workspace { w, step, acceleration, .. } = space;
+            let Workspace { w, right: step, g: acceleration, .. } = space;
             axes.arrive(trial.world, w, step, acceleration);
             if let Some(works) = works {
                 works.end(trial.world, axes, motion, w, step, h);
@@ -190,7 +197,7 @@ fn begin(trial: &mut Trial<'_>, motion: &mut Motion, net: &mut [f64], formula: &
     trial.forces(&motion.u, None, net)?;
     if formula.needs_acceleration() {
         for axis in (0..net.len()).filter(|&axis| motion.free[axis]) {
-            motion.a[axis] = -(net[axis] + motion.damping[axis] * motion.v[axis]) / motion.mass[axis];
+            motion.a[axis] = -(net[axis] + motion.damping[axis / 3] * motion.v[axis]) / motion.mass[axis / 3];
         }
     }
     Ok(())

@@ -218,12 +218,12 @@ pub(super) fn error_and_reach(
 ) -> [f64; 2] {
     let (mut mass, mut error, mut reach) = (0.0, 0.0, 0.0);
     for axis in 0..w.len() {
-        let own = motion.mass[axis];
+        let own = motion.mass[axis / 3];
         // three axes are one node
         mass += own / 3.0;
         reach += own * w[axis] * w[axis];
         if motion.free[axis] {
-            error += own * formula.local_error(h, [motion.a[axis], acceleration[axis]]).powi(2);
+            error += own * formula.local_error(h, [motion.acceleration(axis), acceleration[axis]]).powi(2);
         }
     }
     let mean = |sum: f64| if mass > 0.0 { (sum / mass).sqrt() } else { 0.0 };

@@ -67,26 +67,25 @@ impl Newton<'_, '_> {
     /// Goes along p as far as the residual does less work along it, and where bodies give way along it as far as it
     /// leads downhill. `size` becomes the norm of the new residual.
     pub(super) fn search(&mut self, way: Way, size: &mut f64, enough: f64) -> Result<Tried, Lost> {
-        self.space.from.copy_from_slice(&self.space.w);
+        self.space.elsewhere.copy_from_slice(&self.space.w);
         let begins = self.sums.dot(&self.space.p, &self.space.g);
         let touches = self.trial.world.resource::<Clock>().springs.is_some();
         let moves = self.moves();
         let ends = self.longest();
         let (mut share, mut bracket, mut halvings) = (ends, Bracket::from(begins, ends), 0);
-        let mut sound = true;
         for look in 0..=MOST_LOOKS {
             if look > MOST_HALVINGS && !bracket.crosses() {
                 break;
             }
             halvings = look;
-            let Workspace { w, from, p, to_go, .. } = &mut *self.space;
+            let Workspace { w, elsewhere: from, p, to_go, .. } = &mut *self.space;
             for axis in 0..w.len() {
                 w[axis] = from[axis] + share * (p[axis] + to_go[axis]);
             }
             let tried = self.forces_at_w()?;
             let mut work = f64::NAN;
-            sound = tried.sound;
-            if sound {
+            self.beyond |= !tried.sound;
+            if tried.sound {
                 let now = self.residual();
                 work = self.sums.dot(&self.space.p, &self.space.g);
                 let descends = self.descends(&way, (share, work), touches.then_some(&bracket));
@@ -102,11 +101,11 @@ impl Newton<'_, '_> {
             self.report.halvings += 1;
             share = if touches { bracket.next(share, work) } else { 0.5 * share };
         }
-        let Workspace { w, from, .. } = &mut *self.space;
+        let Workspace { w, elsewhere: from, .. } = &mut *self.space;
         w.copy_from_slice(from);
         Err(Lost::Because(format!(
             "no descent after {halvings} halvings of a Newton step, at a residual of {size:.3e} N{}",
-            if sound { "" } else { ": beyond it forces are no numbers, or elements are turned inside out" }
+            self.what_is_beyond()
         )))
     }
 

@@ -10,17 +10,35 @@ use std::collections::BTreeMap;
 /// elements have gone; and of the springs that touch.
 #[derive(Default)]
 pub(in crate::simulation) struct BlockJacobi {
-    /// Diagonal blocks of K (N/m), a node each.
-    stiffness: Vec<DMat3>,
+    /// Diagonal blocks of K (N/m), a node each; and while they are added up, in all digits.
+    stiffness: Vec<Symmetric>,
+    sums: Vec<DMat3>,
     /// How many elements it is of.
     elements: usize,
-    inverses: Vec<DMat3>,
+    /// Inverses of the blocks (m/N), as their nodes have turned.
+    inverses: Vec<Symmetric>,
     /// What the inverses were made of.
     pub inertia: Vec<f64>,
     pub free: Vec<bool>,
     share: f64,
     /// What springs add to the blocks of nodes that they act on (N/m).
     springs: BTreeMap<usize, DMat3>,
+}
+
+/// A symmetric 3×3 matrix: its diagonal, and yx, zx and zy. Seven digits are enough for what need not be exact.
+#[derive(Clone, Copy, Debug, Default)]
+struct Symmetric([f32; 6]);
+
+impl Symmetric {
+    fn of(matrix: DMat3) -> Self {
+        let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+        Self([x.x, y.y, z.z, 0.5 * (x.y + y.x), 0.5 * (x.z + z.x), 0.5 * (y.z + z.y)].map(|entry| entry as f32))
+    }
+
+    fn matrix(self) -> DMat3 {
+        let [xx, yy, zz, yx, zx, zy] = self.0.map(f64::from);
+        DMat3::from_cols(DVec3::new(xx, yx, zx), DVec3::new(yx, yy, zy), DVec3::new(zx, zy, zz))
+    }
 }
 
 /// What is another than it was.
@@ -37,7 +55,7 @@ pub(super) enum Changed {
 
 impl Preconditioner for BlockJacobi {
     fn apply(&mut self, _: &Cpu, residual: &[f64], z: &mut [f64]) {
-        apply_blocks(&self.inverses, residual, z);
+        self.apply_to(residual, z);
     }
 
     fn follow(&mut self, operator: &Operator<'_>) {
@@ -50,7 +68,7 @@ impl Preconditioner for BlockJacobi {
     }
 
     fn block(&self, node: usize) -> DMat3 {
-        self.at_rest(node)
+        self.inverses[node].matrix()
     }
 
     fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
@@ -60,14 +78,14 @@ impl Preconditioner for BlockJacobi {
     }
 }
 
-/// z = B r of a matrix a node.
-pub(super) fn apply_blocks(blocks: &[DMat3], residual: &[f64], z: &mut [f64]) {
-    for ((block, r), z) in blocks.iter().zip(residual.chunks_exact(3)).zip(z.chunks_exact_mut(3)) {
-        z.copy_from_slice(&(*block * DVec3::from_slice(r)).to_array());
-    }
-}
-
 impl BlockJacobi {
+    /// z = B r.
+    pub fn apply_to(&self, residual: &[f64], z: &mut [f64]) {
+        for ((block, r), z) in self.inverses.iter().zip(residual.chunks_exact(3)).zip(z.chunks_exact_mut(3)) {
+            z.copy_from_slice(&(block.matrix() * DVec3::from_slice(r)).to_array());
+        }
+    }
+
     /// What of an operator is another than it was.
     pub fn compare(&mut self, operator: &Operator<'_>) -> Changed {
         let before = (self.stiffness.len() * 3, self.elements);
@@ -86,19 +104,23 @@ impl BlockJacobi {
     /// Begins with no stiffness, which comes by columns.
     pub fn begin(&mut self, operator: &Operator<'_>) {
         self.stiffness.clear();
-        self.stiffness.resize(operator.free.len() / 3, DMat3::ZERO);
+        self.sums.clear();
+        self.sums.resize(operator.free.len() / 3, DMat3::ZERO);
     }
 
     /// Adds what a column of all elements of a block is to the displaced node itself.
     pub fn add(&mut self, columns: &Columns<'_>) {
         for row in columns.rows() {
             let node = columns.node(row, columns.corner);
-            *self.stiffness[node].col_mut(columns.axis) += columns.force(row, columns.corner);
+            *self.sums[node].col_mut(columns.axis) += columns.force(row, columns.corner);
         }
     }
 
     /// Follows an operator of which this has changed, and the springs that touch.
     pub fn take(&mut self, operator: &Operator<'_>, changed: Changed) {
+        if !self.sums.is_empty() {
+            self.stiffness = std::mem::take(&mut self.sums).into_iter().map(Symmetric::of).collect();
+        }
         if changed != Changed::Nothing {
             self.share = operator.stiffness;
             self.inertia.clear();
@@ -106,11 +128,12 @@ impl BlockJacobi {
             self.free.clear();
             self.free.extend_from_slice(operator.free);
             self.springs.clear();
-            self.inverses = (0..self.stiffness.len()).map(|node| self.inverse_of(node, DMat3::IDENTITY)).collect();
+            self.inverses = vec![Symmetric::default(); self.stiffness.len()];
+            (0..self.stiffness.len()).for_each(|node| self.turn(node, DMat3::IDENTITY));
         }
         let before = std::mem::replace(&mut self.springs, blocks_of_springs(operator));
         for node in before.keys().chain(self.springs.keys()).copied().collect::<Vec<usize>>() {
-            self.inverses[node] = self.inverse_of(node, DMat3::IDENTITY);
+            self.turn(node, DMat3::IDENTITY);
         }
     }
 
@@ -119,26 +142,20 @@ impl BlockJacobi {
         !self.springs.is_empty()
     }
 
-    /// The inverse of the block of a node that is turned.
-    pub fn turned(&self, node: usize, rotation: DMat3) -> DMat3 {
-        match self.free[3 * node..3 * node + 3] {
-            [true, true, true] if !self.springs.contains_key(&node) => {
-                rotation * self.inverses[node] * rotation.transpose()
-            }
-            [false, false, false] => DMat3::ZERO,
-            // what holds it, and what touches it, does not turn with it
-            _ => self.inverse_of(node, rotation),
-        }
-    }
-
-    /// The inverse of the block of a node as it is at rest.
-    pub fn at_rest(&self, node: usize) -> DMat3 {
-        self.inverses[node]
+    /// Finds the inverse of the block of a node that has turned; what holds it, and what touches it, does not turn with
+    /// it.
+    pub fn turn(&mut self, node: usize, rotation: DMat3) {
+        self.inverses[node] = Symmetric::of(self.inverse_of(node, rotation));
     }
 
     fn inverse_of(&self, node: usize, rotation: DMat3) -> DMat3 {
         let axes = 3 * node..3 * node + 3;
-        let stiffness = rotation * self.stiffness[node] * rotation.transpose();
+        if self.free[axes.clone()] == [false; 3] {
+            return DMat3::ZERO;
+        }
+        let at_rest = self.stiffness[node].matrix();
+        let is_turned = rotation != DMat3::IDENTITY;
+        let stiffness = if is_turned { rotation * at_rest * rotation.transpose() } else { at_rest };
         let springs = self.springs.get(&node).copied().unwrap_or(DMat3::ZERO);
         inverse(stiffness * self.share + springs, &self.inertia[axes.clone()], &self.free[axes])
     }

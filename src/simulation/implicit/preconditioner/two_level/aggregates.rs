@@ -10,7 +10,7 @@ pub const RIGID: usize = 6;
 #[derive(Default)]
 pub struct Aggregates {
     /// Of each node.
-    pub of_node: Vec<usize>,
+    pub of_node: Vec<u32>,
     /// From the middle of its aggregate to each node, over the aggregate's extent.
     pub arm: Vec<DVec3>,
     /// Aggregates of how many nodes each.
@@ -41,7 +41,7 @@ impl Aggregates {
                 let middle = nodes.iter().map(|&node| positions[node]).sum::<DVec3>() / nodes.len() as f64;
                 let length = extent.max_element().max(f64::MIN_POSITIVE);
                 for &node in &nodes {
-                    (new.of_node[node], new.arm[node]) = (new.sizes.len(), (positions[node] - middle) / length);
+                    (new.of_node[node], new.arm[node]) = (new.sizes.len() as u32, (positions[node] - middle) / length);
                 }
                 new.sizes.push(nodes.len());
             }

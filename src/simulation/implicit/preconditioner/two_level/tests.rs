@@ -33,7 +33,8 @@ impl Made {
         let axes = Axes::of(&mut simulation.world);
         let mut motion = Motion::default();
         axes.read(&simulation.world, &mut motion);
-        let inertia = motion.mass.iter().zip(&motion.free).map(|(m, &free)| if free { m / 1e-4 } else { 0.0 });
+        let of_axis = |(axis, &free): (usize, &bool)| if free { motion.mass[axis / 3] / 1e-4 } else { 0.0 };
+        let inertia = motion.free.iter().enumerate().map(of_axis);
         Self { inertia: inertia.collect(), axes, motion }
     }
 

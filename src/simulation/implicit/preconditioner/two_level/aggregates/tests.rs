@@ -8,7 +8,7 @@ fn grid(n: usize) -> Vec<DVec3> {
 fn aggregates_are_small_and_have_every_node() {
     let aggregates = Aggregates::of(&grid(11), 30);
     let mut sizes = vec![0; aggregates.count()];
-    aggregates.of_node.iter().for_each(|&aggregate| sizes[aggregate] += 1);
+    aggregates.of_node.iter().for_each(|&aggregate| sizes[aggregate as usize] += 1);
     assert_eq!(sizes, aggregates.sizes);
     assert_eq!(sizes.iter().sum::<usize>(), 1331);
     assert!(sizes.iter().all(|size| (10..=30).contains(size)), "{sizes:?}");
