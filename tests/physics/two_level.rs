@@ -115,7 +115,7 @@ fn what_it_holds_is_told_before_a_run_and_after() {
     let bytes = |of: &str| solver.held.iter().find(|(name, _)| name.contains(of)).unwrap().1;
     let triangle = unknowns * (unknowns + 1) / 2;
     assert_eq!(bytes("coarse matrices"), 8 * (2 * triangle + unknowns));
-    let of_preconditioner: u64 = ["blocks of nodes", "turned", "aggregates", "coarse"].into_iter().map(bytes).sum();
+    let of_preconditioner: u64 = ["blocks of nodes", "aggregates", "coarse"].into_iter().map(bytes).sum();
     simulation.advance(1).unwrap();
     let summary = simulation.summary("interrupted").unwrap();
     assert_eq!(summary.implicit.unwrap().preconditioner_bytes, of_preconditioner);

@@ -20,7 +20,7 @@ pub(super) struct Motion {
     pub u: Vec<f64>,
     pub v: Vec<f64>,
     pub a: Vec<f64>,
-    /// Mass (kg) and damping coefficient (kg/s), of nodes.
+    /// Mass (kg) of nodes, and damping coefficient (kg/s) where there is one.
     pub mass: Vec<f64>,
     pub damping: Vec<f64>,
     /// Whether the axis moves freely, and whether it is held; inactive nodes are neither.
@@ -65,9 +65,7 @@ impl Axes {
         for vector in [&mut *u, v] {
             vector.resize(self.len(), 0.0);
         }
-        for vector in [&mut *mass, damping] {
-            vector.resize(self.len() / 3, 0.0);
-        }
+        mass.resize(self.len() / 3, 0.0);
         free.resize(self.len(), false);
         held.resize(self.len(), false);
         for (body, range) in self.each() {
@@ -93,9 +91,14 @@ impl Axes {
                 acceleration.read(&mut a[range.clone()]);
             }
             let damped = entity.get::<DampingCoefficient>();
+            if damped.is_some() {
+                damping.resize(self.len() / 3, 0.0);
+            }
             for (i, node) in (range.start / 3..range.end / 3).enumerate() {
                 mass[node] = masses.get(i);
-                damping[node] = damped.map_or(0.0, |damped| damped.get(i));
+                if let Some(damped) = damped {
+                    damping[node] = damped.get(i);
+                }
                 for axis in 0..3 {
                     let constrained = axes[i] >> axis & 1 == 1;
                     free[3 * node + axis] = !constrained && mass[node] > 0.0;

@@ -85,7 +85,7 @@ impl Iterations {
     /// What the end of a step of h comes to, in the workspace; and whether it is taken, by what chooses steps.
     pub fn takes(&mut self, control: Option<&mut StepControl>, h: f64, found: &Found) -> bool {
         let Self { settings: Settings { formula, newton, budget, .. }, motion, space, .. } = self;
-        let Workspace { w, right: step, g: acceleration, .. } = space;
+        let Workspace { w, p: step, g: acceleration, .. } = space;
         for axis in 0..w.len() {
             let (velocity, of_axis) = motion.arrival(formula, axis, h, w[axis]);
             (step[axis], acceleration[axis]) = (h * velocity, of_axis);
@@ -139,10 +139,8 @@ impl Iterations {
         axes.read(world, motion);
         kept.keep(world);
         let formula = &settings.formula;
-        for axis in 0..axes.len() {
-            let is_free = motion.free[axis];
-            space.inertia[axis] =
-                if is_free { formula.inertia(h, motion.mass[axis / 3], motion.damping[axis / 3]) } else { 0.0 };
+        for (node, inertia) in space.inertia.iter_mut().enumerate() {
+            *inertia = motion.inertia(formula, h, node);
         }
         preconditioner.follow(&Operator {
             world,

@@ -192,7 +192,7 @@ impl Statics {
         let trial = newton.trial;
         iterations.count(trial.count);
         let path = path?;
-        let Workspace { w, right: step, g: acceleration, .. } = &mut iterations.space;
+        let Workspace { w, p: step, g: acceleration, .. } = &mut iterations.space;
         step.fill(0.0);
         acceleration.fill(0.0);
         axes.arrive(trial.world, w, step, acceleration);
@@ -251,7 +251,7 @@ impl Statics {
         };
         grasped.note(trial.world, (&settings.formula, 1.0, motion), space);
         grasped.load(trial.world);
-        let Workspace { w, right: step, g: acceleration, .. } = space;
+        let Workspace { w, p: step, g: acceleration, .. } = space;
         step.fill(0.0);
         acceleration.fill(0.0);
         axes.arrive(trial.world, w, step, acceleration);

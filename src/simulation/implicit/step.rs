@@ -20,6 +20,7 @@ use crate::error::{Criterion, Error};
 use crate::observation::Observer;
 use crate::scene::schema::{ImplicitScheme, Inversion, Scene, Solver};
 use bevy_ecs::prelude::*;
+use std::ops::Range;
 
 /// What is left of a residual that is warned of.
 const WARNED: f64 = 0.5;
@@ -156,8 +157,11 @@ impl Implicit {
         trial.net(&mut space.net);
         held_axes(trial.world, axes, motion, &mut space.to_go);
         let grasped = Grasped::hold(trial.world, axes, motion, &mut space.to_go);
+        for (node, inertia) in space.inertia.iter_mut().enumerate() {
+            *inertia = motion.inertia(&formula, h, node);
+        }
         for axis in 0..space.w.len() {
-            (space.inertia[axis], space.constant[axis]) = motion.equation(&formula, h, axis, space.net[axis]);
+            space.constant[axis] = motion.constant(&formula, h, axis, space.net[axis]);
             space.w[axis] = motion.predicted(axis, h);
         }
         // loads are those of the end
@@ -174,7 +178,7 @@ impl Implicit {
             let Iterations { motion, space, kept, .. } = &mut *iterations;
             keep_forces(&mut trial, (&formula, h, motion), kept, space)?;
             grasped.note(trial.world, (&formula, h, motion), space);
-            let Workspace { w, right: step, g: acceleration, .. } = space;
+            let Workspace { w, p: step, g: acceleration, .. } = space;
             axes.arrive(trial.world, w, step, acceleration);
             if let Some(works) = works {
                 works.end(trial.world, axes, motion, w, step, h);
@@ -197,14 +201,24 @@ fn begin(trial: &mut Trial<'_>, motion: &mut Motion, net: &mut [f64], formula: &
     trial.forces(&motion.u, None, net)?;
     if formula.needs_acceleration() {
         for axis in (0..net.len()).filter(|&axis| motion.free[axis]) {
-            motion.a[axis] = -(net[axis] + motion.damping[axis / 3] * motion.v[axis]) / motion.mass[axis / 3];
+            motion.a[axis] = -(net[axis] + motion.damping(axis) * motion.v[axis]) / motion.mass[axis / 3];
         }
     }
     Ok(())
 }
 
-/// How far held axes go in the step (m), as `boundary` has written it.
-pub(super) fn held_axes(world: &World, axes: &Axes, motion: &Motion, to_go: &mut [f64]) {
+/// How far held axes go in the step (m), as `boundary` has written it; nothing where none does.
+pub(super) fn held_axes(world: &World, axes: &Axes, motion: &Motion, to_go: &mut Vec<f64>) {
+    let goes = |(body, range): (Entity, Range<usize>)| {
+        let Some(step) = world.get::<DisplacementIncrement>(body) else { return false };
+        let first = range.start;
+        range.into_iter().any(|axis| motion.held[axis] && step.get(axis - first) != 0.0)
+    };
+    if !axes.each().any(goes) {
+        *to_go = Vec::new();
+        return;
+    }
+    to_go.resize(axes.len(), 0.0);
     for (body, range) in axes.each() {
         let Some(step) = world.get::<DisplacementIncrement>(body) else { continue };
         for i in 0..range.len() {

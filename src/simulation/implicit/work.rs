@@ -48,7 +48,7 @@ impl Works {
                 let (moved, velocity) = (w[axis] - motion.u[axis], step[axis] / h);
                 let of_loads = 0.5 * (self.external[axis] + of(external, at)) * moved;
                 let of_elements = 0.5 * (self.internal[axis] + of(internal, at)) * moved;
-                let damped = motion.damping[axis / 3] * 0.5 * (velocity + motion.v[axis]) * moved;
+                let damped = motion.damping(axis) * 0.5 * (velocity + motion.v[axis]) * moved;
                 let mut add = |number: usize, part: f64| {
                     let place = WORK_NUMBERS * node + number;
                     let sum = work.get(place) + part;

@@ -104,9 +104,10 @@ impl Method {
         let implicit = schemes.into_iter().flat_map(|(scheme, linearized)| {
             steps.iter().map(move |&step| Method::Implicit { scheme, step, linearized })
         });
+        let first = steps.first().copied();
         let adaptive = [ImplicitScheme::Euler, generalized].into_iter().flat_map(|scheme| {
-            let of = move |tolerance| steps.first().map(|&step| Method::Adaptive { scheme, step, tolerance });
-            TOLERANCES.into_iter().filter_map(of).collect::<Vec<Self>>()
+            let of = move |tolerance| first.map(|step| Method::Adaptive { scheme, step, tolerance });
+            TOLERANCES.into_iter().filter_map(of)
         });
         let heavier = HEAVIER.into_iter().map(Method::HeavierMasses);
         [Method::Explicit].into_iter().chain(heavier).chain(implicit).chain(adaptive).collect()

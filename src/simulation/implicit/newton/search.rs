@@ -11,6 +11,10 @@ const MOST_HALVINGS: u32 = 12;
 const MOST_LOOKS: u32 = 42;
 /// What the norm of the residual must fall to where something touches, whatever its work along the way.
 const FALLS: f64 = 0.5;
+fn falls() -> f64 {
+    static F: std::sync::OnceLock<f64> = std::sync::OnceLock::new();
+    *F.get_or_init(|| std::env::var("FALLS").ok().and_then(|t| t.parse().ok()).unwrap_or(FALLS))
+}
 /// What the work of the residual must fall to where it has been seen to change its sign along a way.
 const FOUND: f64 = 0.5;
 
@@ -80,7 +84,8 @@ impl Newton<'_, '_> {
             halvings = look;
             let Workspace { w, elsewhere: from, p, to_go, .. } = &mut *self.space;
             for axis in 0..w.len() {
-                w[axis] = from[axis] + share * (p[axis] + to_go[axis]);
+                let left = to_go.get(axis).copied().unwrap_or(0.0);
+                w[axis] = from[axis] + share * (p[axis] + left);
             }
             let tried = self.forces_at_w()?;
             let mut work = f64::NAN;
@@ -91,7 +96,7 @@ impl Newton<'_, '_> {
                 let descends = self.descends(&way, (share, work), touches.then_some(&bracket));
                 // of what is moved as told the work may be of either sign, and what slides is rubbed by what presses
                 // it, of which a symmetric tangent does not know: it leads there where less is left
-                let arrives = touches && now <= if moves { DESCENT } else { FALLS } * *size;
+                let arrives = touches && now <= if moves { DESCENT } else { falls() } * *size;
                 if now.is_finite() && (descends || arrives || self.settings.newton == 1 || now <= enough) {
                     self.space.to_go.iter_mut().for_each(|left| *left *= 1.0 - share);
                     *size = now;
@@ -113,7 +118,8 @@ impl Newton<'_, '_> {
     fn longest(&self) -> f64 {
         let Some(farthest) = self.farthest else { return 1.0 };
         let Workspace { p, to_go, .. } = &*self.space;
-        let most = p.iter().zip(to_go).map(|(p, left)| (p + left).abs()).fold(0.0, f64::max);
+        let left = |axis: usize| to_go.get(axis).copied().unwrap_or(0.0);
+        let most = p.iter().enumerate().map(|(axis, p)| (p + left(axis)).abs()).fold(0.0, f64::max);
         if most > farthest { farthest / most } else { 1.0 }
     }
 

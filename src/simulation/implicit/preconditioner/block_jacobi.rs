@@ -3,6 +3,7 @@
 use super::columns::{Columns, each_column, elements_left};
 use super::{Operator, Preconditioner};
 use crate::backend::cpu::Cpu;
+use crate::components::*;
 use glam::{DMat3, DVec3};
 use std::collections::BTreeMap;
 
@@ -11,12 +12,12 @@ use std::collections::BTreeMap;
 #[derive(Default)]
 pub(in crate::simulation) struct BlockJacobi {
     /// Diagonal blocks of K (N/m), a node each; and while they are added up, in all digits.
-    stiffness: Vec<Symmetric>,
+    stiffness: Blocks,
     sums: Vec<DMat3>,
     /// How many elements it is of.
     elements: usize,
     /// Inverses of the blocks (m/N), as their nodes have turned.
-    inverses: Vec<Symmetric>,
+    inverses: Blocks,
     /// What the inverses were made of.
     pub inertia: Vec<f64>,
     pub free: Vec<bool>,
@@ -25,19 +26,63 @@ pub(in crate::simulation) struct BlockJacobi {
     springs: BTreeMap<usize, DMat3>,
 }
 
-/// A symmetric 3×3 matrix: its diagonal, and yx, zx and zy. Seven digits are enough for what need not be exact.
-#[derive(Clone, Copy, Debug, Default)]
-struct Symmetric([f32; 6]);
+/// Symmetric 3×3 matrices, a node each: diagonals, and yx, zx and zy. Those of a run in f32 are in f32; in f64 rounding
+/// to that would take a symmetric body out of its symmetry.
+struct Blocks(Reals);
 
-impl Symmetric {
-    fn of(matrix: DMat3) -> Self {
-        let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
-        Self([x.x, y.y, z.z, 0.5 * (x.y + y.x), 0.5 * (x.z + z.x), 0.5 * (y.z + z.y)].map(|entry| entry as f32))
+/// Numbers of a matrix.
+const NUMBERS: usize = 6;
+
+impl Default for Blocks {
+    fn default() -> Self {
+        Self(Reals::zeros(Precision::F32, 0))
+    }
+}
+
+impl Blocks {
+    /// Zeros of so many nodes.
+    fn zeros(precision: Precision, nodes: usize) -> Self {
+        Self(Reals::zeros(precision, NUMBERS * nodes))
     }
 
-    fn matrix(self) -> DMat3 {
-        let [xx, yy, zz, yx, zx, zy] = self.0.map(f64::from);
-        DMat3::from_cols(DVec3::new(xx, yx, zx), DVec3::new(yx, yy, zy), DVec3::new(zx, zy, zz))
+    fn len(&self) -> usize {
+        self.0.len() / NUMBERS
+    }
+
+    fn bytes(&self) -> usize {
+        match &self.0 {
+            Reals::F32(numbers) => size_of_val(&numbers[..]),
+            Reals::F64(numbers) => size_of_val(&numbers[..]),
+        }
+    }
+
+    fn set(&mut self, node: usize, matrix: DMat3) {
+        let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+        let numbers = [x.x, y.y, z.z, 0.5 * (x.y + y.x), 0.5 * (x.z + z.x), 0.5 * (y.z + z.y)];
+        numbers.into_iter().enumerate().for_each(|(i, number)| self.0.set(NUMBERS * node + i, number));
+    }
+
+    fn get(&self, node: usize) -> DMat3 {
+        matrix(std::array::from_fn(|i| self.0.get(NUMBERS * node + i)))
+    }
+
+    /// z = B r.
+    fn apply(&self, residual: &[f64], z: &mut [f64]) {
+        match &self.0 {
+            Reals::F32(numbers) => multiply(numbers, residual, z),
+            Reals::F64(numbers) => multiply(numbers, residual, z),
+        }
+    }
+}
+
+fn matrix([xx, yy, zz, yx, zx, zy]: [f64; NUMBERS]) -> DMat3 {
+    DMat3::from_cols(DVec3::new(xx, yx, zx), DVec3::new(yx, yy, zy), DVec3::new(zx, zy, zz))
+}
+
+fn multiply<T: Copy + Into<f64>>(numbers: &[T], residual: &[f64], z: &mut [f64]) {
+    let (blocks, residual) = (numbers.as_chunks::<NUMBERS>().0, residual.as_chunks::<3>().0);
+    for ((block, r), z) in blocks.iter().zip(residual).zip(z.as_chunks_mut::<3>().0) {
+        *z = (matrix(block.map(Into::into)) * DVec3::from_array(*r)).to_array();
     }
 }
 
@@ -68,11 +113,11 @@ impl Preconditioner for BlockJacobi {
     }
 
     fn block(&self, node: usize) -> DMat3 {
-        self.inverses[node].matrix()
+        self.inverses.get(node)
     }
 
     fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
-        let of_nodes = size_of_val(&self.stiffness[..]) + size_of_val(&self.inverses[..]);
+        let of_nodes = self.stiffness.bytes() + self.inverses.bytes();
         let of_axes = size_of_val(&self.inertia[..]) + size_of_val(&self.free[..]);
         ("the 3×3 blocks of nodes".into(), vec![("blocks of nodes", (of_nodes + of_axes) as u64)])
     }
@@ -81,9 +126,7 @@ impl Preconditioner for BlockJacobi {
 impl BlockJacobi {
     /// z = B r.
     pub fn apply_to(&self, residual: &[f64], z: &mut [f64]) {
-        for ((block, r), z) in self.inverses.iter().zip(residual.chunks_exact(3)).zip(z.chunks_exact_mut(3)) {
-            z.copy_from_slice(&(block.matrix() * DVec3::from_slice(r)).to_array());
-        }
+        self.inverses.apply(residual, z);
     }
 
     /// What of an operator is another than it was.
@@ -103,7 +146,7 @@ impl BlockJacobi {
 
     /// Begins with no stiffness, which comes by columns.
     pub fn begin(&mut self, operator: &Operator<'_>) {
-        self.stiffness.clear();
+        self.stiffness = Blocks::default();
         self.sums.clear();
         self.sums.resize(operator.free.len() / 3, DMat3::ZERO);
     }
@@ -119,7 +162,9 @@ impl BlockJacobi {
     /// Follows an operator of which this has changed, and the springs that touch.
     pub fn take(&mut self, operator: &Operator<'_>, changed: Changed) {
         if !self.sums.is_empty() {
-            self.stiffness = std::mem::take(&mut self.sums).into_iter().map(Symmetric::of).collect();
+            self.stiffness = Blocks::zeros(operator.precision(), self.sums.len());
+            let sums = std::mem::take(&mut self.sums).into_iter().enumerate();
+            sums.for_each(|(node, sum)| self.stiffness.set(node, sum));
         }
         if changed != Changed::Nothing {
             self.share = operator.stiffness;
@@ -128,7 +173,7 @@ impl BlockJacobi {
             self.free.clear();
             self.free.extend_from_slice(operator.free);
             self.springs.clear();
-            self.inverses = vec![Symmetric::default(); self.stiffness.len()];
+            self.inverses = Blocks::zeros(operator.precision(), self.stiffness.len());
             (0..self.stiffness.len()).for_each(|node| self.turn(node, DMat3::IDENTITY));
         }
         let before = std::mem::replace(&mut self.springs, blocks_of_springs(operator));
@@ -145,7 +190,7 @@ impl BlockJacobi {
     /// Finds the inverse of the block of a node that has turned; what holds it, and what touches it, does not turn with
     /// it.
     pub fn turn(&mut self, node: usize, rotation: DMat3) {
-        self.inverses[node] = Symmetric::of(self.inverse_of(node, rotation));
+        self.inverses.set(node, self.inverse_of(node, rotation));
     }
 
     fn inverse_of(&self, node: usize, rotation: DMat3) -> DMat3 {
@@ -153,19 +198,19 @@ impl BlockJacobi {
         if self.free[axes.clone()] == [false; 3] {
             return DMat3::ZERO;
         }
-        let at_rest = self.stiffness[node].matrix();
+        let at_rest = self.stiffness.get(node);
         let is_turned = rotation != DMat3::IDENTITY;
         let stiffness = if is_turned { rotation * at_rest * rotation.transpose() } else { at_rest };
         let springs = self.springs.get(&node).copied().unwrap_or(DMat3::ZERO);
-        inverse(stiffness * self.share + springs, &self.inertia[axes.clone()], &self.free[axes])
+        inverse(stiffness * self.share + springs, self.inertia[node], &self.free[axes])
     }
 }
 
 /// Of the block of a node with its inertia, on the axes that are free; of its diagonal where that is not positive.
-fn inverse(stiffness: DMat3, inertia: &[f64], free: &[bool]) -> DMat3 {
+fn inverse(stiffness: DMat3, inertia: f64, free: &[bool]) -> DMat3 {
     let mut block = stiffness;
     for i in 0..3 {
-        block.col_mut(i)[i] += inertia[i];
+        block.col_mut(i)[i] += inertia;
         if !free[i] {
             (0..3).for_each(|j| {
                 block.col_mut(i)[j] = 0.0;

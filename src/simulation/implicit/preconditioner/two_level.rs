@@ -49,8 +49,6 @@ struct Piece {
     /// Its body, and the first of that's nodes among those of all bodies.
     body: Entity,
     first_node: usize,
-    /// All its nodes, among those of all bodies.
-    nodes: Vec<u32>,
     coarse: Coarse,
     /// Where its unknowns begin among those of all.
     first: usize,
@@ -95,7 +93,7 @@ impl Preconditioner for TwoLevel {
         self.fine.take(operator, changed);
         if changed != Changed::Nothing {
             self.made += 1;
-            self.pieces.iter_mut().for_each(|piece| piece.coarse.factorize(&piece.nodes, operator));
+            self.pieces.iter_mut().for_each(|piece| piece.coarse.factorize(operator));
             self.touched.forget();
         }
         self.turn(operator, changed != Changed::Nothing || touches);
@@ -126,7 +124,7 @@ impl Preconditioner for TwoLevel {
     fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
         let (blocks, mut held) = self.fine.holds();
         let places = size_of_val(&self.places[..]) + size_of_val(&self.residual[..]) + size_of_val(&self.motions[..]) + self.touched.bytes();
-        let of_pieces = self.pieces.iter().map(|piece| piece.coarse.bytes() + size_of_val(&piece.nodes[..]));
+        let of_pieces = self.pieces.iter().map(|piece| piece.coarse.bytes());
         let aggregates: usize = self.pieces.iter().map(|piece| piece.coarse.size() / RIGID).sum();
         let matrices: usize = self.pieces.iter().map(|piece| piece.coarse.bytes_of_matrix()).sum();
         held.push(("aggregates", (places + of_pieces.sum::<usize>()) as u64));
@@ -151,7 +149,7 @@ impl TwoLevel {
         let on = parts.filter_map(|&(first, _)| {
             let [piece, own] = place(first)?;
             let Piece { coarse, first, .. } = &self.pieces[piece];
-            Some(first / RIGID + coarse.aggregates.of_node[own] as usize)
+            Some(first / RIGID + coarse.aggregates.of(own))
         });
         let aggregates: Vec<usize> = on.collect::<BTreeSet<usize>>().into_iter().collect();
         let (aggregates, springs) = match aggregates.len() {
@@ -215,8 +213,9 @@ fn is_outside(spring: &SpringSlope<'_>, is_led: impl Fn(usize) -> bool) -> bool 
 }
 
 impl Piece {
+    /// Its nodes, among those of all bodies; all that move.
     fn each_node(&self) -> impl Iterator<Item = usize> + '_ {
-        self.nodes.iter().map(|&node| node as usize)
+        self.coarse.nodes.iter().map(|&node| node as usize)
     }
 
     /// Whether there is an axis that nothing holds.
@@ -238,7 +237,7 @@ impl Piece {
         let force: DVec3 = self.each_node().map(|node| DVec3::from_slice(&residual[3 * node..])).sum();
         let motion = force * per_inertia;
         for node in self.each_node() {
-            (0..3).for_each(|i| residual[3 * node + i] -= inertia[3 * node + i] * motion[i]);
+            (0..3).for_each(|i| residual[3 * node + i] -= inertia[node] * motion[i]);
         }
         motion
     }
@@ -250,7 +249,7 @@ impl Piece {
         if per_inertia == DVec3::ZERO {
             return;
         }
-        let left = |axis: usize| right[axis] - inertia[axis] * x[axis];
+        let left = |axis: usize| right[axis] - inertia[axis / 3] * x[axis];
         let sum = |i: usize| -> f64 { self.each_node().map(|node| left(3 * node + i)).sum() };
         let motion = DVec3::new(sum(0), sum(1), sum(2)) * per_inertia;
         for node in self.each_node() {
@@ -264,7 +263,7 @@ impl Piece {
         if per_inertia == DVec3::ZERO {
             return;
         }
-        let weighted = |node: usize| DVec3::from_slice(&inertia[3 * node..]) * DVec3::from_slice(&z[3 * node..]);
+        let weighted = |node: usize| DVec3::from_slice(&z[3 * node..]) * inertia[node];
         let mean = self.each_node().map(weighted).sum::<DVec3>() * per_inertia;
         for node in self.each_node() {
             (0..3).for_each(|i| z[3 * node + i] += motion[i] - mean[i]);
@@ -281,8 +280,7 @@ fn find_pieces(operator: &Operator<'_>, fine: &mut BlockJacobi) -> Vec<Piece> {
             let nodes: Vec<(usize, DVec3)> = nodes.into_iter().map(|node| (first + node, rest.0[node])).collect();
             let coarse = Coarse::of(&nodes, operator);
             let end = unknowns + coarse.size();
-            let nodes = nodes.into_iter().map(|(node, _)| node as u32).collect();
-            all.push(Piece { body, first_node: first, nodes, coarse, first: unknowns, is_held: false });
+            all.push(Piece { body, first_node: first, coarse, first: unknowns, is_held: false });
             unknowns = end;
         }
         first += rest.0.len();

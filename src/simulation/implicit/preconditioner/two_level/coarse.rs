@@ -23,7 +23,8 @@ pub(in crate::simulation::implicit) struct Coarse {
     factor: Cholesky,
     /// How each aggregate has turned.
     rotations: Vec<DMat3>,
-    /// Along each axis that nothing holds, 1/ΣD of the piece (m/N); else 0.
+    /// Along which axes nothing holds the piece, and 1/ΣD of it there (m/N); else 0.
+    all_free: [bool; 3],
     pub per_inertia: DVec3,
 }
 
@@ -44,34 +45,34 @@ impl Coarse {
         let (nodes, rest): (Vec<usize>, Vec<DVec3>) =
             piece.iter().filter(|(node, _)| moves(*node)).copied().unzip();
         let most = NODES_AN_AGGREGATE.max(nodes.len().div_ceil(MOST_AGGREGATES));
-        let mut aggregates = Aggregates::of(&rest, most);
+        let mut aggregates = Aggregates::within(&rest, most);
         let order = aggregates.sort();
         let nodes = order.iter().map(|&own| nodes[own] as u32).collect();
+        let all_free = [0, 1, 2].map(|axis| piece.iter().all(|(node, _)| operator.free[3 * node + axis]));
         let size = RIGID * aggregates.count();
         let mut new = Self {
             stiffness: vec![0.0; size * (size + 1) / 2],
             factor: Cholesky::default(),
             rotations: vec![DMat3::IDENTITY; aggregates.count()],
+            all_free,
             per_inertia: DVec3::ZERO,
             nodes,
             aggregates,
         };
-        new.find_inertia(piece.iter().map(|(node, _)| *node), operator);
+        new.find_inertia(operator);
         new
     }
 
-    /// Which axes nothing holds, and how much inertia there is along them.
-    fn find_inertia(&mut self, piece: impl Iterator<Item = usize> + Clone, operator: &Operator<'_>) {
-        for axis in 0..3 {
-            let all_free = piece.clone().all(|node| operator.free[3 * node + axis]);
-            let sum: f64 = piece.clone().map(|node| operator.inertia[3 * node + axis]).sum();
-            self.per_inertia[axis] = if all_free && sum > 0.0 { 1.0 / sum } else { 0.0 };
-        }
+    /// How much inertia there is along axes that nothing holds.
+    fn find_inertia(&mut self, operator: &Operator<'_>) {
+        let sum: f64 = self.nodes.iter().map(|&node| operator.inertia[node as usize]).sum();
+        let per_inertia = if sum > 0.0 { 1.0 / sum } else { 0.0 };
+        self.per_inertia = DVec3::from_array(self.all_free.map(|all_free| if all_free { per_inertia } else { 0.0 }));
     }
 
     /// Makes the factor of Pᵀ (D + c K) P.
-    pub fn factorize(&mut self, piece: &[u32], operator: &Operator<'_>) {
-        self.find_inertia(piece.iter().map(|&node| node as usize), operator);
+    pub fn factorize(&mut self, operator: &Operator<'_>) {
+        self.find_inertia(operator);
         let size = self.size();
         let entries = (0..size).flat_map(|row| (0..=row).map(move |column| start(column, size) + row - column));
         let mut matrix: Vec<f64> = entries.map(|entry| self.stiffness[entry] * operator.stiffness).collect();
@@ -79,7 +80,7 @@ impl Coarse {
             let first = RIGID * aggregate;
             for axis in (0..3).filter(|axis| operator.free[3 * node + axis]) {
                 let motion = motions(arm, axis);
-                let inertia = operator.inertia[3 * node + axis];
+                let inertia = operator.inertia[node];
                 for (i, j) in (0..RIGID).flat_map(|i| (0..=i).map(move |j| (i, j))) {
                     matrix[place(first + i, first + j)] += inertia * motion[i] * motion[j];
                 }
@@ -91,7 +92,7 @@ impl Coarse {
     /// How far a part of a node's motion along an axis goes with each motion of its aggregate, as that has turned: its
     /// first unknown among those of the piece, and the ways.
     pub fn ways(&self, own: usize, axis: usize, part: f64) -> (usize, [f64; RIGID]) {
-        let aggregate = self.aggregates.of_node[own] as usize;
+        let aggregate = self.aggregates.of(own);
         let back = self.rotations[aggregate].transpose().col(axis) * part;
         let turn = self.aggregates.arm[own].cross(back);
         (RIGID * aggregate, [back.x, back.y, back.z, turn.x, turn.y, turn.z])
@@ -128,8 +129,11 @@ impl Coarse {
 
     /// Its nodes, among those of all bodies, each with its aggregate and its arm at rest.
     pub fn members(&self) -> impl Iterator<Item = (usize, usize, DVec3)> + '_ {
-        let of_aggregates = self.aggregates.of_node.iter().zip(&self.aggregates.arm);
-        self.nodes.iter().zip(of_aggregates).map(|(&node, (&aggregate, &arm))| (node as usize, aggregate as usize, arm))
+        let arms = &self.aggregates.arm;
+        self.aggregates.ranges.iter().enumerate().flat_map(move |(aggregate, range)| {
+            let own = self.nodes[range.clone()].iter().zip(&arms[range.clone()]);
+            own.map(move |(&node, &arm)| (node as usize, aggregate, arm))
+        })
     }
 
     /// How each aggregate has turned.
