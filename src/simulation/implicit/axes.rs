@@ -10,7 +10,7 @@ pub(super) struct Axes {
     pub bodies: Vec<Entity>,
     ranges: Vec<Range<usize>>,
     /// About the height of the flattest element at the node of each axis (m).
-    pub heights: Vec<f32>,
+    pub heights: Reals,
 }
 
 /// What the motion of axes depends on, at the beginning of a step.
@@ -33,14 +33,16 @@ impl Axes {
     pub fn of(world: &mut World) -> Self {
         let bodies = super::super::frequency::bodies(world);
         let (mut ranges, mut heights, mut end) = (Vec::new(), Vec::new(), 0);
+        let u = bodies.first().and_then(|&body| world.get::<Displacement>(body));
+        let precision = u.map_or(Precision::F64, |u| u.precision());
         for &body in &bodies {
             let length = world.get::<Displacement>(body).map_or(0, |u| u.len());
             ranges.push(end..end + length);
             end += length;
             let of_nodes = heights_at_nodes(world, body).unwrap_or_default();
-            heights.extend(of_nodes.iter().flat_map(|&height| [height as f32; 3]));
+            heights.extend(of_nodes.iter().flat_map(|&height| [height; 3]));
         }
-        Self { bodies, ranges, heights }
+        Self { bodies, ranges, heights: Reals::from_f64(precision, heights.into_iter()) }
     }
 
     /// How many there are.
@@ -50,7 +52,7 @@ impl Axes {
 
     /// Bytes of what is known of each.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.heights[..])
+        self.heights.bytes().len()
     }
 
     /// Each body and its range.

@@ -34,7 +34,7 @@ pub(in crate::simulation) struct Operator<'a> {
 
 impl Operator<'_> {
     /// The numbers of the run.
-    fn precision(&self) -> Precision {
+    pub fn precision(&self) -> Precision {
         let body = self.bodies.first().and_then(|&body| self.world.get::<Displacement>(body));
         body.map_or(Precision::F64, |u| u.precision())
     }

@@ -11,10 +11,6 @@ const MOST_HALVINGS: u32 = 12;
 const MOST_LOOKS: u32 = 42;
 /// What the norm of the residual must fall to where something touches, whatever its work along the way.
 const FALLS: f64 = 0.5;
-fn falls() -> f64 {
-    static F: std::sync::OnceLock<f64> = std::sync::OnceLock::new();
-    *F.get_or_init(|| std::env::var("FALLS").ok().and_then(|t| t.parse().ok()).unwrap_or(FALLS))
-}
 /// What the work of the residual must fall to where it has been seen to change its sign along a way.
 const FOUND: f64 = 0.5;
 
@@ -96,7 +92,7 @@ impl Newton<'_, '_> {
                 let descends = self.descends(&way, (share, work), touches.then_some(&bracket));
                 // of what is moved as told the work may be of either sign, and what slides is rubbed by what presses
                 // it, of which a symmetric tangent does not know: it leads there where less is left
-                let arrives = touches && now <= if moves { DESCENT } else { falls() } * *size;
+                let arrives = touches && now <= if moves { DESCENT } else { FALLS } * *size;
                 if now.is_finite() && (descends || arrives || self.settings.newton == 1 || now <= enough) {
                     self.space.to_go.iter_mut().for_each(|left| *left *= 1.0 - share);
                     *size = now;

@@ -26,64 +26,74 @@ pub(in crate::simulation) struct BlockJacobi {
     springs: BTreeMap<usize, DMat3>,
 }
 
-/// Symmetric 3×3 matrices, a node each: diagonals, and yx, zx and zy. Those of a run in f32 are in f32; in f64 rounding
-/// to that would take a symmetric body out of its symmetry.
-struct Blocks(Reals);
-
-/// Numbers of a matrix.
-const NUMBERS: usize = 6;
+/// Symmetric 3×3 matrices, a node each. Those of a run in f32 are in f32, by their diagonals and yx, zx and zy.
+enum Blocks {
+    F32(Vec<[f32; 6]>),
+    F64(Vec<DMat3>),
+}
 
 impl Default for Blocks {
     fn default() -> Self {
-        Self(Reals::zeros(Precision::F32, 0))
+        Self::F32(Vec::new())
     }
 }
 
 impl Blocks {
     /// Zeros of so many nodes.
     fn zeros(precision: Precision, nodes: usize) -> Self {
-        Self(Reals::zeros(precision, NUMBERS * nodes))
+        match precision {
+            Precision::F32 => Self::F32(vec![[0.0; 6]; nodes]),
+            Precision::F64 => Self::F64(vec![DMat3::ZERO; nodes]),
+        }
     }
 
     fn len(&self) -> usize {
-        self.0.len() / NUMBERS
+        match self {
+            Self::F32(blocks) => blocks.len(),
+            Self::F64(blocks) => blocks.len(),
+        }
     }
 
     fn bytes(&self) -> usize {
-        match &self.0 {
-            Reals::F32(numbers) => size_of_val(&numbers[..]),
-            Reals::F64(numbers) => size_of_val(&numbers[..]),
+        match self {
+            Self::F32(blocks) => size_of_val(&blocks[..]),
+            Self::F64(blocks) => size_of_val(&blocks[..]),
         }
     }
 
     fn set(&mut self, node: usize, matrix: DMat3) {
-        let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
-        let numbers = [x.x, y.y, z.z, 0.5 * (x.y + y.x), 0.5 * (x.z + z.x), 0.5 * (y.z + z.y)];
-        numbers.into_iter().enumerate().for_each(|(i, number)| self.0.set(NUMBERS * node + i, number));
+        match self {
+            Self::F32(blocks) => {
+                let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+                let beside = [0.5 * (x.y + y.x), 0.5 * (x.z + z.x), 0.5 * (y.z + z.y)];
+                blocks[node] = [x.x, y.y, z.z, beside[0], beside[1], beside[2]].map(|entry| entry as f32);
+            }
+            Self::F64(blocks) => blocks[node] = matrix,
+        }
     }
 
     fn get(&self, node: usize) -> DMat3 {
-        matrix(std::array::from_fn(|i| self.0.get(NUMBERS * node + i)))
+        match self {
+            Self::F32(blocks) => widened(&blocks[node]),
+            Self::F64(blocks) => blocks[node],
+        }
     }
 
     /// z = B r.
     fn apply(&self, residual: &[f64], z: &mut [f64]) {
-        match &self.0 {
-            Reals::F32(numbers) => multiply(numbers, residual, z),
-            Reals::F64(numbers) => multiply(numbers, residual, z),
+        let nodes = residual.as_chunks::<3>().0.iter().zip(z.as_chunks_mut::<3>().0);
+        match self {
+            Self::F32(blocks) => {
+                nodes.zip(blocks).for_each(|((r, z), block)| *z = (widened(block) * DVec3::from(*r)).into());
+            }
+            Self::F64(blocks) => nodes.zip(blocks).for_each(|((r, z), block)| *z = (*block * DVec3::from(*r)).into()),
         }
     }
 }
 
-fn matrix([xx, yy, zz, yx, zx, zy]: [f64; NUMBERS]) -> DMat3 {
+fn widened(block: &[f32; 6]) -> DMat3 {
+    let [xx, yy, zz, yx, zx, zy] = block.map(f64::from);
     DMat3::from_cols(DVec3::new(xx, yx, zx), DVec3::new(yx, yy, zy), DVec3::new(zx, zy, zz))
-}
-
-fn multiply<T: Copy + Into<f64>>(numbers: &[T], residual: &[f64], z: &mut [f64]) {
-    let (blocks, residual) = (numbers.as_chunks::<NUMBERS>().0, residual.as_chunks::<3>().0);
-    for ((block, r), z) in blocks.iter().zip(residual).zip(z.as_chunks_mut::<3>().0) {
-        *z = (matrix(block.map(Into::into)) * DVec3::from_array(*r)).to_array();
-    }
 }
 
 /// What is another than it was.
@@ -190,7 +200,13 @@ impl BlockJacobi {
     /// Finds the inverse of the block of a node that has turned; what holds it, and what touches it, does not turn with
     /// it.
     pub fn turn(&mut self, node: usize, rotation: DMat3) {
-        self.inverses.set(node, self.inverse_of(node, rotation));
+        let inverse = match self.free[3 * node..3 * node + 3] {
+            [true, true, true] if rotation != DMat3::IDENTITY && !self.springs.contains_key(&node) => {
+                rotation * self.inverse_of(node, DMat3::IDENTITY) * rotation.transpose()
+            }
+            _ => self.inverse_of(node, rotation),
+        };
+        self.inverses.set(node, inverse);
     }
 
     fn inverse_of(&self, node: usize, rotation: DMat3) -> DMat3 {

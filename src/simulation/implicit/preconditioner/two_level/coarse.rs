@@ -5,6 +5,7 @@ use super::aggregates::{Aggregates, RIGID, motions};
 use super::cholesky::Cholesky;
 use super::rotation::{angle, rotation};
 use crate::backend::cpu::Cpu;
+use crate::components::Reals;
 use glam::{DMat3, DVec3};
 
 /// Nodes of an aggregate at most, as long as a piece has no more aggregates than that: the matrix is dense.
@@ -18,6 +19,8 @@ pub(in crate::simulation::implicit) struct Coarse {
     /// Its nodes that move along some axis, among those of all bodies, one aggregate after the other.
     pub nodes: Vec<u32>,
     pub aggregates: Aggregates,
+    /// The arms of its nodes at rest (see [`Aggregates::arm`]).
+    arms: Reals,
     /// Pᵀ K P: columns from the diagonal down, one after the other.
     pub stiffness: Vec<f64>,
     factor: Cholesky,
@@ -48,6 +51,8 @@ impl Coarse {
         let mut aggregates = Aggregates::within(&rest, most);
         let order = aggregates.sort();
         let nodes = order.iter().map(|&own| nodes[own] as u32).collect();
+        let arms = std::mem::take(&mut aggregates.arm).into_iter().flat_map(|arm| arm.to_array());
+        let arms = Reals::from_f64(operator.precision(), arms);
         let all_free = [0, 1, 2].map(|axis| piece.iter().all(|(node, _)| operator.free[3 * node + axis]));
         let size = RIGID * aggregates.count();
         let mut new = Self {
@@ -58,6 +63,7 @@ impl Coarse {
             per_inertia: DVec3::ZERO,
             nodes,
             aggregates,
+            arms,
         };
         new.find_inertia(operator);
         new
@@ -94,7 +100,7 @@ impl Coarse {
     pub fn ways(&self, own: usize, axis: usize, part: f64) -> (usize, [f64; RIGID]) {
         let aggregate = self.aggregates.of(own);
         let back = self.rotations[aggregate].transpose().col(axis) * part;
-        let turn = self.aggregates.arm[own].cross(back);
+        let turn = self.arms.vector(own).cross(back);
         (RIGID * aggregate, [back.x, back.y, back.z, turn.x, turn.y, turn.z])
     }
 
@@ -109,12 +115,11 @@ impl Coarse {
         let mut any = false;
         for (range, turned) in self.aggregates.ranges.iter().zip(&mut self.rotations) {
             let nodes = || self.nodes[range.clone()].iter().map(|&node| moved(node as usize));
-            let mut middles = [DVec3::ZERO; 2];
+            let (mut middles, share) = ([DVec3::ZERO; 2], 1.0 / range.len() as f64);
             for (rest, displacement) in nodes() {
-                middles[0] += rest;
-                middles[1] += rest + displacement;
+                middles[0] += share * rest;
+                middles[1] += share * (rest + displacement);
             }
-            let middles = middles.map(|sum| sum / range.len() as f64);
             let mut shape = DMat3::ZERO;
             for (rest, displacement) in nodes() {
                 let (x, rest) = (rest + displacement - middles[1], rest - middles[0]);
@@ -129,10 +134,8 @@ impl Coarse {
 
     /// Its nodes, among those of all bodies, each with its aggregate and its arm at rest.
     pub fn members(&self) -> impl Iterator<Item = (usize, usize, DVec3)> + '_ {
-        let arms = &self.aggregates.arm;
         self.aggregates.ranges.iter().enumerate().flat_map(move |(aggregate, range)| {
-            let own = self.nodes[range.clone()].iter().zip(&arms[range.clone()]);
-            own.map(move |(&node, &arm)| (node as usize, aggregate, arm))
+            range.clone().map(move |own| (self.nodes[own] as usize, aggregate, self.arms.vector(own)))
         })
     }
 
@@ -158,7 +161,7 @@ impl Coarse {
 
     /// Bytes of what belongs to its nodes and aggregates.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.nodes[..]) + size_of_val(&self.rotations[..]) + self.aggregates.bytes()
+        size_of_val(&self.nodes[..]) + self.arms.bytes().len() + size_of_val(&self.rotations[..]) + self.aggregates.bytes()
     }
 
     /// The nodes with how they have turned.
@@ -172,15 +175,14 @@ impl Coarse {
         for (sums, (rotation, range)) in motions.chunks_exact_mut(RIGID).zip(of_aggregates) {
             let (mut force, mut turn) = (DVec3::ZERO, DVec3::ZERO);
             let is_turned = *rotation != DMat3::IDENTITY;
-            let back = rotation.transpose();
-            for (&node, arm) in self.nodes[range.clone()].iter().zip(&self.aggregates.arm[range.clone()]) {
-                let r = DVec3::from_slice(&residual[3 * node as usize..]);
-                let r = if is_turned { back * r } else { r };
+            for own in range.clone() {
+                let r = DVec3::from_slice(&residual[3 * self.nodes[own] as usize..]);
+                let arm = self.arms.vector(own);
                 force += r;
-                turn += arm.cross(r);
+                turn += if is_turned { *rotation * arm } else { arm }.cross(r);
             }
-            sums[..3].copy_from_slice(&force.to_array());
-            sums[3..].copy_from_slice(&turn.to_array());
+            sums[..3].copy_from_slice(&(rotation.transpose() * force).to_array());
+            sums[3..].copy_from_slice(&(rotation.transpose() * turn).to_array());
         }
         self.factor.solve(cpu, motions);
     }
@@ -189,12 +191,11 @@ impl Coarse {
     pub fn carry(&self, motions: &[f64], free: &[bool], z: &mut [f64]) {
         let of_aggregates = self.rotations.iter().zip(&self.aggregates.ranges);
         for (motion, (rotation, range)) in motions.chunks_exact(RIGID).zip(of_aggregates) {
-            let (moved, turned) = (DVec3::from_slice(motion), DVec3::from_slice(&motion[3..]));
+            let (moved, turned) = (*rotation * DVec3::from_slice(motion), *rotation * DVec3::from_slice(&motion[3..]));
             let is_turned = *rotation != DMat3::IDENTITY;
-            for (&node, &arm) in self.nodes[range.clone()].iter().zip(&self.aggregates.arm[range.clone()]) {
-                let node = node as usize;
-                let step = moved + turned.cross(arm);
-                let step = if is_turned { *rotation * step } else { step }.to_array();
+            for own in range.clone() {
+                let (node, arm) = (self.nodes[own] as usize, self.arms.vector(own));
+                let step = (moved + turned.cross(if is_turned { *rotation * arm } else { arm })).to_array();
                 let (z, free) = (&mut z[3 * node..3 * node + 3], &free[3 * node..3 * node + 3]);
                 for i in 0..3 {
                     z[i] += if free[i] { step[i] } else { 0.0 };
