@@ -5,7 +5,7 @@
 //! velocity over ω together.
 
 use crate::configurations::{cpu_and_long_gpu, near, scene_of};
-use crate::implicit::{SQUARE, oscillator, oscillator_on, options, refused, top};
+use crate::implicit::{SQUARE, options, oscillator, oscillator_on, refused, top};
 use sinew::backend::gpu::gpu_or_reason;
 use sinew::components::Precision;
 use sinew::snapshot::Snapshot;

@@ -65,7 +65,9 @@ impl Motion {
     ) {
         for axis in 0..w.len() {
             g[axis] = match self.free[axis] {
-                true => constant[axis] + inertia[axis / 3] * (w[axis] - self.predicted(axis, h)) + stiffness * net[axis],
+                true => {
+                    constant[axis] + inertia[axis / 3] * (w[axis] - self.predicted(axis, h)) + stiffness * net[axis]
+                }
                 false => 0.0,
             };
         }

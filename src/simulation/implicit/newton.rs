@@ -319,7 +319,11 @@ impl Newton<'_, '_> {
 
     /// p ≈ A⁻¹ b on free axes; `moves`: where held axes still have to go.
     fn solve_linear(&mut self, tolerance: f64, moves: bool) -> Result<Way, Lost> {
-        if moves { self.set_right()? } else { self.exchange() }
+        if moves {
+            self.set_right()?
+        } else {
+            self.exchange()
+        }
         let solved = self.conjugate_gradients(tolerance);
         let along = self.sums.dot(&self.space.p, &self.space.right);
         if !moves {

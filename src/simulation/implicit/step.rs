@@ -44,7 +44,8 @@ pub(in crate::simulation) enum Taken {
 impl Implicit {
     /// What takes the steps of a scene; `None` where they are explicit.
     pub fn of(scene: &Scene, world: &mut World) -> Option<Self> {
-        let Solver::Implicit { scheme, step, adaptive, newton, tolerance, preconditioner, budget } = scene.solver else {
+        let Solver::Implicit { scheme, step, adaptive, newton, tolerance, preconditioner, budget } = scene.solver
+        else {
             return None;
         };
         if scene.is_static() {
@@ -91,8 +92,7 @@ impl Implicit {
             works.begin(world, &self.axes);
         }
         let of_works = self.works.as_ref().map_or(0, Works::bytes);
-        let mut in_use =
-            self.iterations.in_use(format!("{scheme}: {iterations}{lengths}"), &self.axes, world, passes);
+        let mut in_use = self.iterations.in_use(format!("{scheme}: {iterations}{lengths}"), &self.axes, world, passes);
         in_use.held.push(("forces at the beginning of a step, for energies", of_works as u64));
         in_use
     }

@@ -9,7 +9,10 @@ const MOST_HALVINGS: u32 = 12;
 /// How often it is looked along a way where the work is known to change its sign: two looks halve what is left, and
 /// springs a million times as stiff as the rest are found within 2⁻²⁰ of it.
 const MOST_LOOKS: u32 = 42;
-/// What the norm of the residual must fall to where something touches, whatever its work along the way.
+/// What the norm of the residual must fall to where something touches, whatever its work along the way. Ten iterations
+/// that do no more come to the usual tolerance of 1e-3, half of those that a step has. Between .1 and .9 it changes
+/// next to nothing: no pass of a ball that presses a lens with springs 10 and 100 times as stiff as an element, by
+/// either scheme, and 3 of 1053 of one that presses a block.
 const FALLS: f64 = 0.5;
 /// What the work of the residual must fall to where it has been seen to change its sign along a way.
 const FOUND: f64 = 0.5;

@@ -123,7 +123,10 @@ impl Preconditioner for TwoLevel {
 
     fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
         let (blocks, mut held) = self.fine.holds();
-        let places = size_of_val(&self.places[..]) + size_of_val(&self.residual[..]) + size_of_val(&self.motions[..]) + self.touched.bytes();
+        let places = size_of_val(&self.places[..])
+            + size_of_val(&self.residual[..])
+            + size_of_val(&self.motions[..])
+            + self.touched.bytes();
         let of_pieces = self.pieces.iter().map(|piece| piece.coarse.bytes());
         let aggregates: usize = self.pieces.iter().map(|piece| piece.coarse.size() / RIGID).sum();
         let matrices: usize = self.pieces.iter().map(|piece| piece.coarse.bytes_of_matrix()).sum();

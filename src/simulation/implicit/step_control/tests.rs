@@ -57,7 +57,13 @@ fn frames_and_corners_are_the_ends_of_steps() {
     let corner = 0.0437;
     let mut control = control();
     let (taken, _) = run(&mut control, 0.1, &[corner], |_, length| 2e2 * length * length);
-    let ends: Vec<f64> = taken.iter().scan(0.0, |at, length| { *at += length; Some(*at) }).collect();
+    let ends: Vec<f64> = taken
+        .iter()
+        .scan(0.0, |at, length| {
+            *at += length;
+            Some(*at)
+        })
+        .collect();
     for wanted in (1..=10).map(|frame| 0.01 * f64::from(frame)).chain([corner]) {
         assert!(ends.iter().any(|end| (end - wanted).abs() < 1e-9), "{wanted} s: {ends:?}");
     }

@@ -45,8 +45,7 @@ impl Coarse {
     /// Of the nodes of a piece, with their rest positions (m); without its stiffness.
     pub fn of(piece: &[(usize, DVec3)], operator: &Operator<'_>) -> Self {
         let moves = |node: usize| operator.free[3 * node..3 * node + 3].contains(&true);
-        let (nodes, rest): (Vec<usize>, Vec<DVec3>) =
-            piece.iter().filter(|(node, _)| moves(*node)).copied().unzip();
+        let (nodes, rest): (Vec<usize>, Vec<DVec3>) = piece.iter().filter(|(node, _)| moves(*node)).copied().unzip();
         let most = NODES_AN_AGGREGATE.max(nodes.len().div_ceil(MOST_AGGREGATES));
         let mut aggregates = Aggregates::within(&rest, most);
         let order = aggregates.sort();
@@ -161,7 +160,10 @@ impl Coarse {
 
     /// Bytes of what belongs to its nodes and aggregates.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.nodes[..]) + self.arms.bytes().len() + size_of_val(&self.rotations[..]) + self.aggregates.bytes()
+        size_of_val(&self.nodes[..])
+            + self.arms.bytes().len()
+            + size_of_val(&self.rotations[..])
+            + self.aggregates.bytes()
     }
 
     /// The nodes with how they have turned.
