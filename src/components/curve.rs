@@ -115,7 +115,7 @@ impl Curve {
     }
 
     /// The first time after one at which two pieces of the curve meet (s).
-    fn corner_after(&self, time: f64) -> Option<f64> {
+    pub(super) fn corner_after(&self, time: f64) -> Option<f64> {
         let first = |corners: [Option<f64>; 2]| corners.into_iter().flatten().find(|corner| *corner > time);
         match self {
             Curve::Step { start, end } => first([Some(*start), *end]),

@@ -298,6 +298,23 @@ impl Signals {
         self.sources.iter().filter_map(|(source, _)| of_source(source)).reduce(f64::min)
     }
 
+    /// The first time after one (s) at which two pieces of a curve or of a tool's path meet.
+    #[doc(hidden)]
+    pub fn corner_after(&self, time: f64) -> Option<f64> {
+        let of_source = |(source, inputs): &(Signal, Vec<Option<usize>>)| {
+            let corner = match source {
+                Signal::Pose { motion, .. } => motion.corner_after(time),
+                _ => None,
+            };
+            let course = |(curve, input): (&'_ Curve, &Option<usize>)| match input {
+                Some(input) => self.inputs[*input].course().corner_after(time),
+                None => curve.corner_after(time),
+            };
+            source.curves().iter().zip(inputs).filter_map(course).chain(corner).reduce(f64::min)
+        };
+        self.sources.iter().filter_map(of_source).reduce(f64::min)
+    }
+
     /// Whether nodes have been moved as told by a jump until a time (s).
     #[doc(hidden)]
     pub fn have_jumped(&self, until: f64) -> bool {

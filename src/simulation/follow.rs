@@ -321,7 +321,9 @@ impl Simulation {
         if self.solver.next_check() > self.step_count() {
             return Ok(());
         }
-        let Some(mut follower) = self.solver.lend_follower() else { return Ok(()) };
+        let Some(mut follower) = self.solver.lend_follower() else {
+            return self.choose_step().map_err(|error| self.note(error));
+        };
         let started = Instant::now();
         let checked = self.check_with(&mut follower);
         follower.history.seconds += started.elapsed().as_secs_f64();

@@ -142,6 +142,8 @@ pub const UNITS: &[(&str, &str)] = &[
     ("energies.scheme_loss", "J"),
     ("energies.contact_loss", "J"),
     ("implicit.largest_residual_left", "1"),
+    ("implicit.smallest_step", "s"),
+    ("implicit.largest_step", "s"),
     ("implicit.longest_step", "s"),
     ("implicit.step_percentile_99", "s"),
     ("energies.constraint_work", "J"),

@@ -3,6 +3,7 @@
 use super::Options;
 use super::known::Known;
 use super::parameters::{hand_out, set_intervals};
+use super::run::WHOLE;
 use super::schedule::{Scheduled, check_names, resolve};
 use super::stable_step::{self, Stability};
 use super::{contact_springs, outputs, plausible};
@@ -108,9 +109,11 @@ fn clock(
             Clock { relaxation: Some(relaxation), springs, ..Clock::with_step(scene.scene.duration * ramp_rate) };
         return Some((clock, Stability::of_rest(bound), max_steps));
     }
-    if let Solver::Implicit { step, .. } = scene.scene.solver {
+    if let Solver::Implicit { step, adaptive, .. } = scene.scene.solver {
         let bound = stable_step::found_bound(world, diagnostics)?;
-        let steps = (scene.scene.duration / step).round().max(1.0) as u64;
+        let steps = scene.scene.duration / step;
+        // chosen steps end where the scene does
+        let steps = if adaptive.is_some() { (steps - WHOLE).ceil() } else { steps.round() }.max(1.0) as u64;
         let touches = !scene.scene.contacts.is_empty() || !scene.scene.attachments.is_empty();
         let springs = touches.then_some(SolvedSprings { step: bound.time_step, forces: SpringForces::Tried });
         let clock = Clock { velocities_at_ends: true, springs, ..Clock::with_step(step) };

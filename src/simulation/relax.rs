@@ -162,7 +162,7 @@ impl Relaxing {
     }
 
     /// What Newton's iterations have taken, where they are tried.
-    pub fn iterations(&self) -> Option<&ImplicitSteps> {
+    pub fn iterations(&self) -> Option<ImplicitSteps> {
         self.newton.as_ref().map(|newton| newton.statics.report())
     }
 

@@ -3,6 +3,7 @@
 
 use super::follow::Followed;
 use super::grab::AllGrabs;
+use super::implicit::Controlled;
 use super::interval::RunInterval;
 use super::ports::PortState;
 use super::step_change::relax_as;
@@ -23,6 +24,9 @@ pub(super) struct ResumeState {
     intervals: BTreeMap<String, RunInterval>,
     /// What is known of the stable step.
     found: Option<Followed>,
+    /// What chooses implicit steps by their errors remembers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    control: Option<Controlled>,
     /// What programs set.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     inputs: BTreeMap<String, InputState>,
@@ -74,6 +78,7 @@ impl Simulation {
         let state = ResumeState {
             intervals: self.entries.iter().filter_map(interval).collect(),
             found: self.solver.follower().map(|follower| follower.followed()),
+            control: self.solver.step_control().map(|control| control.state()),
             inputs: self.input_states(),
             ports: self.port_states(),
             can_grab: self.world.query::<&Grabs>().iter(&self.world).next().is_some(),
@@ -94,6 +99,9 @@ impl Simulation {
         snapshot.fits(&mut self.world)?;
         if let Some((name, _)) = state.intervals.iter().find(|(_, interval)| !interval.is_sound()) {
             return Err(senseless(format!("the system `{name}` can never run")).into());
+        }
+        if state.control.is_some_and(|control| !control.is_sound()) {
+            return Err(senseless("its steps have no length").into());
         }
         self.check_input_states(&state.inputs).map_err(senseless)?;
         self.check_port_states(&state.ports).map_err(senseless)?;
@@ -126,6 +134,9 @@ impl Simulation {
         self.world.resource_scope(|world, mut observer: Mut<Observer>| observer.go_on(world, last_step))?;
         if let (Some(follower), Some(found)) = (self.solver.follower_mut(), state.found) {
             follower.take_up(found, &mut self.world);
+        }
+        if let (Some(control), Some(state)) = (self.solver.step_control(), state.control) {
+            control.take_up(state);
         }
         Ok(ours)
     }

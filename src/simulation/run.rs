@@ -12,8 +12,8 @@ use bevy_ecs::prelude::*;
 use std::time::Duration;
 use web_time::Instant;
 
-/// A time is a whole number of steps that is so little of one away.
-const WHOLE: f64 = 1e-6;
+/// A time is a whole number of steps, or of frames, that is so little of one away.
+pub(super) const WHOLE: f64 = 1e-6;
 
 impl Simulation {
     /// Takes one step.

@@ -5,7 +5,7 @@
 
 use super::explain::SolverInUse;
 use super::follow::Follower;
-use super::implicit::{Implicit, OfForces};
+use super::implicit::{Implicit, OfForces, StepControl};
 use super::relax::Relaxing;
 use super::stable_step::Stability;
 use super::{ScheduledPass, Simulation};
@@ -99,6 +99,11 @@ impl Solver {
         }
     }
 
+    /// What chooses the lengths of implicit steps by their errors.
+    pub fn step_control(&mut self) -> Option<&mut StepControl> {
+        self.implicit_mut()?.control_mut()
+    }
+
     /// What it is made of, where it solves equations.
     pub fn in_use(&mut self, scene: &Scene, world: &mut World, passes: OfForces<'_>) -> Option<SolverInUse> {
         match (self, &scene.solver) {
@@ -122,7 +127,8 @@ impl Solver {
     pub fn next_check(&self) -> u64 {
         match self {
             Self::Explicit(follower) => follower.as_ref().map_or(u64::MAX, |follower| follower.found.next),
-            Self::Relaxation(_) | Self::Implicit(_) => u64::MAX,
+            Self::Implicit(implicit) => implicit.control().map_or(u64::MAX, StepControl::next),
+            Self::Relaxation(_) => u64::MAX,
         }
     }
 

@@ -78,7 +78,7 @@ impl Stability {
         Self {
             step,
             found_from: "scene",
-            because: "implicit steps are as long as the scene wants them".into(),
+            because: "implicit steps are as long as the scene wants them, or as their errors allow".into(),
             ..Self::of_rest(bound)
         }
     }

@@ -26,7 +26,8 @@ fn is_read(column: &ColumnAccess) -> bool {
 
 impl Simulation {
     /// Takes steps of another length (s) from the present one on, whatever is stable; the scene ends with the last
-    /// whole step in its duration. Where the step follows what is stable, it becomes no larger than this from then on.
+    /// whole step in its duration. Where the step follows what is stable, or errors of implicit steps, it becomes no
+    /// larger than this from then on.
     ///
     /// # Errors
     /// A step that is no positive number; a static analysis, whose steps are no motion; what the GPU says.
@@ -37,6 +38,10 @@ impl Simulation {
         }
         self.lineage.note(clock.step, &format!("step {time_step:?}"));
         let left = ((self.scene.duration - clock.time()) / time_step).round().max(0.0);
+        if let Some(control) = self.solver.step_control() {
+            control.limit(time_step);
+            return self.choose_step();
+        }
         if let Some(follower) = self.solver.follower_mut() {
             follower.found.own = Some(time_step);
         }

@@ -225,7 +225,7 @@ impl Simulation {
             nanoseconds_an_element_and_step: a_step * 1e9 / facts.elements.max(1) as f64,
             systems: self.entries.iter().map(|entry| system_time(entry, &self.plan, facts.on_gpu)).collect(),
             traffic: self.world.get_resource::<Device>().map(Device::traffic),
-            implicit: self.implicit_steps().copied(),
+            implicit: self.implicit_steps(),
             equilibrium: self.equilibrium().cloned(),
             preload: self.preload.clone(),
             energies,

@@ -244,7 +244,7 @@ fn each_block_of_a_stack_bears_those_above_it() {
             simulation.advance_to(0.6).unwrap();
             let weight = 1050.0 * 8e-6 * 9.81;
             let what = format!("{points}, {precision:?}");
-            let report = *simulation.implicit_steps().unwrap();
+            let report = simulation.implicit_steps().unwrap();
             println!("{what}: {report:?}");
             let table = simulation.tool("table").unwrap().force.z;
             near(&format!("{what}: table"), -table, 2.0 * weight, weight, 2e-3);

@@ -149,7 +149,7 @@ fn any_number_of_threads_gives_the_same_bits_and_counts() {
             let (_, mut simulation) = cube(solver, "Tet4", EFFECTS, 0.2, &options(Precision::F32, threads));
             let bits: Vec<[u64; 3]> =
                 simulation.displacements("b").unwrap().iter().map(|u| u.to_array().map(f64::to_bits)).collect();
-            let mut counts = *simulation.implicit_steps().unwrap();
+            let mut counts = simulation.implicit_steps().unwrap();
             (counts.longest_step, counts.step_percentile_99) = (0.0, 0.0);
             (bits, counts)
         })
@@ -260,7 +260,7 @@ fn budgets_bound_passes_and_tell_what_is_left() {
         0.2,
         &options(Precision::F32, 1),
     );
-    let counts = *simulation.implicit_steps().unwrap();
+    let counts = simulation.implicit_steps().unwrap();
     println!("{counts:?}");
     assert!(counts.most_passes <= 5 && counts.largest_residual_left > 0.5, "{counts:?}");
     let summary = simulation.summary("finished").unwrap();
@@ -278,7 +278,7 @@ fn steps_at_rest_leave_no_residual_to_speak_of() {
         loads: [Pressure(on: Plane(normal: (0, 0, 1), at: 0.1), pressure: 100, curve: Smooth(end: 0.1))])",
     );
     simulation.finish().unwrap();
-    let counts = *simulation.implicit_steps().unwrap();
+    let counts = simulation.implicit_steps().unwrap();
     assert!(counts.newton_iterations < counts.steps, "none is needed at rest: {counts:?}");
     assert_eq!((counts.unsolved, counts.largest_residual_left), (0, 0.0), "{counts:?}");
     assert!(simulation.summary("finished").unwrap().guards.warnings.is_empty());
@@ -313,7 +313,7 @@ fn prescribed_motion_goes_where_it_should_and_gives_its_work() {
 }
 
 /// What is told of a scene with a solver and something else in it.
-fn refused(solver: &str, more: &str) -> String {
+pub fn refused(solver: &str, more: &str) -> String {
     let text = format!(
         "(duration: 0.1, solver: {solver},
         bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (1, 1, 1)), material: \"m\")}},

@@ -138,6 +138,11 @@ fn implicit(took: &ImplicitSteps, to_rest: bool, page: &mut Page) {
     let (of, passes) = (counted(took.steps, one), count(took.passes));
     let (newton, linear) = (counted(took.newton_iterations, "Newton iteration"), count(took.linear_iterations));
     page.row(heading, format!("{of}: {passes} passes over all forces, {newton}, {linear} of conjugate gradients"));
+    if !to_rest && took.smallest_step < took.largest_step {
+        let (from, to) = (quantity(took.smallest_step, "s"), quantity(took.largest_step, "s"));
+        let back = counted(took.steps_rejected, "step");
+        page.row("", format!("steps of {from} to {to}; {back} taken back for a shorter one"));
+    }
     let (left, above) = (digits(took.largest_residual_left), counted(took.unsolved, one));
     page.row("", format!("largest share of a residual left: {left}; {above} above the tolerance"));
     let (most, longest) = (took.most_passes, quantity(took.longest_step, "s"));

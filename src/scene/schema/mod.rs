@@ -38,7 +38,7 @@ pub use per_copy::PerCopy;
 pub use picture::{Colours, Cut, Field, Opacity, Picture};
 pub use scene::{EnergyGuard, Guard, Guards, Integration, Scene, StepBound, WhenUnstable};
 pub use selection::{Probe, Quantity, Select};
-pub use solver::{ImplicitScheme, Preconditioner, Solver};
+pub use solver::{ErrorControl, ImplicitScheme, Preconditioner, Solver};
 pub use system::OwnSystem;
 pub use tool::{Contact, ContactLaw, Follow, Free, Points, Port, Suction, Tool, ToolMesh, ToolMove, ToolPlace};
 

@@ -14,9 +14,12 @@ pub enum Solver {
         /// The formula of a step.
         #[serde(default)]
         scheme: ImplicitScheme,
-        /// The step (s).
+        /// The step (s); with `adaptive` the longest one.
         #[serde(default = "a_frame")]
         step: f64,
+        /// Shorter steps where the error of one would be too large; all are alike when left out.
+        #[serde(default)]
+        adaptive: Option<ErrorControl>,
         /// Newton iterations of a step at most; 1 is the linearised step.
         #[serde(default = "most_iterations")]
         newton: u32,
@@ -31,6 +34,22 @@ pub enum Solver {
         #[serde(default)]
         budget: Option<u64>,
     },
+}
+
+/// How steps are chosen by an estimate of their error.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct ErrorControl {
+    /// The error that the steps within one `step` of time add up to, as a share of `displacement`.
+    #[serde(default = "step_tolerance")]
+    pub tolerance: f64,
+    /// The displacement (m) that errors are a share of, root mean square over all mass; the largest so far when left
+    /// out, a hundredth of the bodies' extent at least.
+    #[serde(default)]
+    pub displacement: Option<f64>,
+    /// The shortest step (s), which is taken whatever its error; `step`/10⁴ when left out.
+    #[serde(default)]
+    pub smallest: Option<f64>,
 }
 
 /// The formula of an implicit step.

@@ -1,7 +1,10 @@
 //! Implicit steps: their numbers, and what of a scene they cannot do.
 
-use super::{Validator, scene, show};
-use crate::scene::schema::{Contact, ContactLaw, ImplicitScheme, Scene, SearchMethod, Solver, WhenUnstable};
+use super::{Validator, scene, show, with_unit};
+use crate::scene::schema::{
+    Contact, ContactLaw, ErrorControl, ImplicitScheme, Scene, SearchMethod, Solver, WhenUnstable,
+};
+use crate::scene::syntax::Path;
 
 pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
     if scene_.search().is_some_and(|search| search.method == SearchMethod::Newton) {
@@ -19,9 +22,12 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
         let message = "at rest all contacts are springs, or none is";
         refuse_kinematic(scene_, message, "leave `law` out at the others", validator);
     }
-    let Solver::Implicit { scheme, step, newton, tolerance, budget, .. } = scene_.solver else { return };
+    let Solver::Implicit { scheme, step, adaptive, newton, tolerance, budget, .. } = scene_.solver else { return };
     let path = scene("solver");
     validator.above_zero(&path.name("step"), step, "s");
+    if let Some(control) = adaptive {
+        error_control(control, step, &path.name("adaptive"), validator);
+    }
     if newton == 0 {
         validator.must(&path.name("newton"), "at least 1", newton).note("1 is the linearised step");
     }
@@ -59,6 +65,27 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
     let message = "the kinematic law corrects explicit steps, and there are none";
     refuse_kinematic(scene_, message, "use `solver: Explicit`", validator);
     refused(scene_, "implicit steps", "`solver: Explicit`", validator);
+}
+
+/// Steps that are chosen by their error.
+fn error_control(control: ErrorControl, step: f64, path: &Path, validator: &mut Validator) {
+    let ErrorControl { tolerance, displacement, smallest } = control;
+    if tolerance <= 0.0 || tolerance >= 1.0 {
+        validator
+            .must(&path.name("tolerance"), "above 0 and below 1", show(tolerance))
+            .note("it is the error that the steps within one `step` add up to, as a share; 1e-3 when left out");
+    }
+    if let Some(displacement) = displacement {
+        validator.above_zero(&path.name("displacement"), displacement, "m");
+    }
+    if let Some(smallest) = smallest {
+        validator.above_zero(&path.name("smallest"), smallest, "s");
+        if smallest > step && step > 0.0 {
+            validator
+                .must(&path.name("smallest"), &format!("at most {}", with_unit(step, "s")), with_unit(smallest, "s"))
+                .note("`step` is the longest step");
+        }
+    }
 }
 
 /// Refuses the kinematic law.

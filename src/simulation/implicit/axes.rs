@@ -10,17 +10,17 @@ pub(super) struct Axes {
     pub bodies: Vec<Entity>,
     ranges: Vec<Range<usize>>,
     /// About the height of the flattest element at the node of each axis (m).
-    pub heights: Vec<f64>,
+    pub heights: Reals,
 }
 
 /// What the motion of axes depends on, at the beginning of a step.
 #[derive(Default)]
 pub(super) struct Motion {
-    /// Displacement (m), velocity (m/s) and acceleration (m/s²).
+    /// Displacement (m), velocity (m/s), and acceleration (m/s²) where that is carried on.
     pub u: Vec<f64>,
     pub v: Vec<f64>,
     pub a: Vec<f64>,
-    /// Mass (kg) and damping coefficient (kg/s).
+    /// Mass (kg) of nodes, and damping coefficient (kg/s) where there is one.
     pub mass: Vec<f64>,
     pub damping: Vec<f64>,
     /// Whether the axis moves freely, and whether it is held; inactive nodes are neither.
@@ -33,6 +33,8 @@ impl Axes {
     pub fn of(world: &mut World) -> Self {
         let bodies = super::super::frequency::bodies(world);
         let (mut ranges, mut heights, mut end) = (Vec::new(), Vec::new(), 0);
+        let u = bodies.first().and_then(|&body| world.get::<Displacement>(body));
+        let precision = u.map_or(Precision::F64, |u| u.precision());
         for &body in &bodies {
             let length = world.get::<Displacement>(body).map_or(0, |u| u.len());
             ranges.push(end..end + length);
@@ -40,7 +42,7 @@ impl Axes {
             let of_nodes = heights_at_nodes(world, body).unwrap_or_default();
             heights.extend(of_nodes.iter().flat_map(|&height| [height; 3]));
         }
-        Self { bodies, ranges, heights }
+        Self { bodies, ranges, heights: Reals::from_f64(precision, heights.into_iter()) }
     }
 
     /// How many there are.
@@ -50,7 +52,7 @@ impl Axes {
 
     /// Bytes of what is known of each.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.heights[..])
+        self.heights.bytes().len()
     }
 
     /// Each body and its range.
@@ -62,9 +64,10 @@ impl Axes {
     pub fn read(&self, world: &World, motion: &mut Motion) {
         let rate = world.resource::<Clock>().rate();
         let Motion { u, v, a, mass, damping, free, held } = motion;
-        for vector in [&mut *u, v, a, mass, damping] {
+        for vector in [&mut *u, v] {
             vector.resize(self.len(), 0.0);
         }
+        mass.resize(self.len() / 3, 0.0);
         free.resize(self.len(), false);
         held.resize(self.len(), false);
         for (body, range) in self.each() {
@@ -86,16 +89,23 @@ impl Axes {
             }
             v[range.clone()].iter_mut().for_each(|v| *v *= rate);
             if let Some(acceleration) = entity.get::<Acceleration>() {
+                a.resize(self.len(), 0.0);
                 acceleration.read(&mut a[range.clone()]);
             }
             let damped = entity.get::<DampingCoefficient>();
-            for i in 0..range.len() {
-                let (axis, node) = (range.start + i, i / 3);
-                mass[axis] = masses.get(node);
-                damping[axis] = damped.map_or(0.0, |damped| damped.get(node));
-                let constrained = axes[node] >> (i % 3) & 1 == 1;
-                free[axis] = !constrained && mass[axis] > 0.0;
-                held[axis] = constrained && mass[axis] > 0.0;
+            if damped.is_some() {
+                damping.resize(self.len() / 3, 0.0);
+            }
+            for (i, node) in (range.start / 3..range.end / 3).enumerate() {
+                mass[node] = masses.get(i);
+                if let Some(damped) = damped {
+                    damping[node] = damped.get(i);
+                }
+                for axis in 0..3 {
+                    let constrained = axes[i] >> axis & 1 == 1;
+                    free[3 * node + axis] = !constrained && mass[node] > 0.0;
+                    held[3 * node + axis] = constrained && mass[node] > 0.0;
+                }
             }
         }
     }

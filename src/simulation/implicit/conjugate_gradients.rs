@@ -14,8 +14,19 @@ pub(super) struct Vectors {
 }
 
 impl Vectors {
-    /// How many there are.
-    pub const COUNT: usize = 4;
+    /// Of so many axes.
+    pub fn resize(&mut self, length: usize) {
+        let Self { residual, preconditioned, direction, image } = self;
+        for vector in [residual, preconditioned, direction, image] {
+            vector.resize(length, 0.0);
+        }
+    }
+
+    /// Their bytes.
+    pub fn bytes(&self) -> usize {
+        let Self { residual, preconditioned, direction, image } = self;
+        [residual, preconditioned, direction, image].into_iter().map(|vector| size_of_val(&vector[..])).sum()
+    }
 }
 
 /// Why a solve ended.
@@ -58,10 +69,8 @@ pub(super) fn solve(
     stop: Stop,
     mut times: impl FnMut(&[f64], &mut [f64]) -> Result<(), Error>,
 ) -> Result<Solved, Error> {
+    vectors.resize(b.len());
     let Vectors { residual, preconditioned, direction, image } = vectors;
-    for vector in [&mut *residual, preconditioned, direction, image] {
-        vector.resize(b.len(), 0.0);
-    }
     x.fill(0.0);
     residual.copy_from_slice(b);
     let enough = stop.tolerance * sums.norm(b);

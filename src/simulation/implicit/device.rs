@@ -46,7 +46,7 @@ pub(super) struct LinearSystem<'a> {
     pub net: &'a [f64],
     /// The velocity there as a displacement of a step (m), where loads look at it.
     pub steps: Option<&'a [f64]>,
-    /// D (N/m).
+    /// D of nodes (N/m).
     pub inertia: &'a [f64],
     pub free: &'a [bool],
     pub formula: &'a Formula,
@@ -100,7 +100,8 @@ impl OnDevice {
     fn fill(&mut self, world: &mut World, system: &LinearSystem<'_>, size: f64, stop: Stop) -> Result<(), Error> {
         let mut numbers = [0.0_f32; SOLVE_WORDS];
         numbers[LEFT + 1] = (stop.tolerance * stop.tolerance) as f32;
-        let inertia = system.inertia.iter().zip(system.free).map(|(&d, &free)| if free { d } else { -1.0 });
+        let of_axis = |(axis, &free): (usize, &bool)| if free { system.inertia[axis / 3] } else { -1.0 };
+        let inertia = system.free.iter().enumerate().map(of_axis);
         let blocks = (0..system.right.len() / 3).flat_map(|node| {
             let block = system.preconditioner.block(node);
             let [x, y, z] = [block.x_axis, block.y_axis, block.z_axis];

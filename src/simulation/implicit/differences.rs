@@ -12,18 +12,20 @@ pub(super) fn steps_to<'s>(
     h: f64,
     motion: &Motion,
     w: &[f64],
-    steps: &'s mut [f64],
+    steps: &'s mut Vec<f64>,
     trial: &Trial<'_>,
 ) -> Option<&'s [f64]> {
-    trial.looks_at_steps().then(|| {
-        for (axis, step) in steps.iter_mut().enumerate() {
-            *step = match formula.is_of_rest() {
-                true => w[axis] - motion.u[axis],
-                false => h * motion.arrival(formula, axis, h, w[axis]).0,
-            };
-        }
-        &*steps
-    })
+    if !trial.looks_at_steps() {
+        return None;
+    }
+    steps.resize(w.len(), 0.0);
+    for (axis, step) in steps.iter_mut().enumerate() {
+        *step = match formula.is_of_rest() {
+            true => w[axis] - motion.u[axis],
+            false => h * motion.arrival(formula, axis, h, w[axis]).0,
+        };
+    }
+    Some(steps)
 }
 
 /// c (F(w + ε p) − F(w))/ε, and the part of the springs that touch at w.
@@ -32,7 +34,7 @@ pub(super) fn difference(
     (formula, h, motion): (&Formula, f64, &Motion),
     (w, net): (&[f64], &[f64]),
     elsewhere: &mut [f64],
-    steps: &mut [f64],
+    steps: &mut Vec<f64>,
     p: &[f64],
     image: &mut [f64],
 ) -> Result<(), Error> {

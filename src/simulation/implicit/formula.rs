@@ -89,6 +89,23 @@ impl Formula {
         1.0 - self.alpha_f
     }
 
+    /// The order of the error of a motion in h.
+    pub fn order(&self) -> i32 {
+        if self.needs_acceleration() { 2 } else { 1 }
+    }
+
+    /// What a step of h is off by (m), to the first term that it leaves out, of accelerations before and after. Of
+    /// first order w − u(t + h) = ½ h² a⁺. Of second order the accelerations are those of t + (α_m − α_f) h, so that
+    /// h² [(½ − β) a + β a⁺] is off by (β − ⅙ + ½ (α_m − α_f)) h² (a⁺ − a); with α_m = α_f as Zienkiewicz & Xie (1991)
+    /// have it.
+    pub fn local_error(&self, h: f64, [before, after]: [f64; 2]) -> f64 {
+        if self.order() == 1 {
+            return 0.5 * h * h * after;
+        }
+        let beta = 1.0 / self.of_displacement;
+        (beta - 1.0 / 6.0 + 0.5 * (self.alpha_m - self.alpha_f)) * h * h * (after - before)
+    }
+
     /// Whether accelerations are carried on.
     pub fn needs_acceleration(&self) -> bool {
         self.of_acceleration != 0.0 || self.alpha_m != 0.0 || self.before != 0.0

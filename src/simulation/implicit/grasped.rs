@@ -13,7 +13,7 @@ pub(super) struct Grasped(Vec<(HeldNode, usize, [bool; 3])>);
 
 impl Grasped {
     /// Holds the free axes of nodes that closed tools hold, and says how far they have to go (m).
-    pub fn hold(world: &mut World, axes: &Axes, motion: &mut Motion, to_go: &mut [f64]) -> Self {
+    pub fn hold(world: &mut World, axes: &Axes, motion: &mut Motion, to_go: &mut Vec<f64>) -> Self {
         let mut all = Vec::new();
         // a step asks for no memory for what is not there
         if !axes.bodies.iter().any(|&body| world.get::<Grasps>(body).is_some()) {
@@ -27,6 +27,7 @@ impl Grasped {
                 let axis = first + i;
                 own[i] = motion.free[axis];
                 if own[i] {
+                    to_go.resize(axes.len(), 0.0);
                     (motion.free[axis], motion.held[axis]) = (false, true);
                     to_go[axis] = to - motion.u[axis];
                 }
@@ -56,7 +57,8 @@ impl Grasped {
             let of_axis = |i: usize| {
                 let axis = first + i;
                 let velocity = motion.arrival(formula, axis, h, space.w[axis]).0;
-                let inertial = motion.mass[axis] * (velocity - motion.v[axis]) / h + motion.damping[axis] * velocity;
+                let (mass, damping) = (motion.mass[axis / 3], motion.damping(axis));
+                let inertial = mass * (velocity - motion.v[axis]) / h + damping * velocity;
                 let inertial = if formula.is_of_rest() { 0.0 } else { inertial };
                 if own[i] { space.net[axis] + inertial } else { 0.0 }
             };

@@ -6,9 +6,10 @@ use super::super::explain::SolverInUse;
 use super::axes::{Axes, Motion};
 use super::device::{OnDevice, in_words};
 use super::kept::Kept;
-use super::newton::{Newton, Settings, Workspace};
+use super::newton::{Found, Newton, Settings, Workspace};
 use super::preconditioner::{Operator, Preconditioner, of_name};
 use super::report::{Durations, ImplicitSteps};
+use super::step_control::{StepControl, error_and_reach};
 use super::sums::Sums;
 use super::trial::Trial;
 use crate::backend::cpu::Cpu;
@@ -30,6 +31,10 @@ pub(super) struct Iterations {
     pub sums: Sums,
     pub report: ImplicitSteps,
     durations: Durations,
+    /// When the step began that is sought, and the passes that it has taken so far, those that were taken back with
+    /// them.
+    began: Option<Instant>,
+    passes: u64,
     /// What solves on a device, once it has.
     pub on_device: Option<OnDevice>,
 }
@@ -48,6 +53,8 @@ impl Iterations {
             sums: Sums::on(world.resource::<Cpu>()),
             report: ImplicitSteps::default(),
             durations: Durations::default(),
+            began: None,
+            passes: 0,
             on_device: None,
         }
     }
@@ -64,6 +71,7 @@ impl Iterations {
             sums: &self.sums,
             on_device: &mut self.on_device,
             h,
+            beyond: false,
             farthest: None,
         }
     }
@@ -71,17 +79,55 @@ impl Iterations {
     /// Notes how often a solve took forces.
     pub fn count(&mut self, passes: u64) {
         self.report.passes += passes;
-        self.report.most_passes = self.report.most_passes.max(passes);
+        self.passes += passes;
     }
 
-    /// Notes a step that began then.
-    pub fn end_step(&mut self, started: Instant) {
+    /// What the end of a step of h comes to, in the workspace; and whether it is taken, by what chooses steps.
+    pub fn takes(&mut self, control: Option<&mut StepControl>, h: f64, found: &Found) -> bool {
+        let Self { settings: Settings { formula, newton, budget, .. }, motion, space, .. } = self;
+        let Workspace { w, p: step, g: acceleration, .. } = space;
+        for axis in 0..w.len() {
+            let (velocity, of_axis) = motion.arrival(formula, axis, h, w[axis]);
+            (step[axis], acceleration[axis]) = (h * velocity, of_axis);
+        }
+        let Some(control) = control else { return true };
+        let is_stuck = *newton > 1 && budget.is_none() && !found.solved;
+        if is_stuck && control.cut_back(h) {
+            return false;
+        }
+        let [error, reach] = error_and_reach((formula, h, motion), w, acceleration);
+        control.takes(h, error, reach, formula.order())
+    }
+
+    /// Begins with a step, or once more with one that was taken back.
+    pub fn begin_step(&mut self) {
+        self.began.get_or_insert_with(Instant::now);
+    }
+
+    /// Notes that a step is taken back; what was told before it stands of residuals.
+    pub fn take_back(&mut self, told: &ImplicitSteps) {
+        let ImplicitSteps { unsolved, largest_residual_left, .. } = *told;
+        let steps_rejected = self.report.steps_rejected + 1;
+        self.report = ImplicitSteps { unsolved, largest_residual_left, steps_rejected, ..self.report };
+    }
+
+    /// Notes the end of a step.
+    pub fn end_step(&mut self) {
         self.report.steps += 1;
-        self.report.preconditioner_bytes = self.preconditioner.holds().1.iter().map(|(_, bytes)| bytes).sum();
-        let seconds = started.elapsed().as_secs_f64();
+        self.report.most_passes = self.report.most_passes.max(std::mem::take(&mut self.passes));
+        let seconds = self.began.take().map_or(0.0, |began| began.elapsed().as_secs_f64());
         self.durations.count(seconds);
         self.report.longest_step = self.report.longest_step.max(seconds);
-        self.report.step_percentile_99 = self.durations.of_most().min(self.report.longest_step);
+    }
+
+    /// What was taken so far.
+    pub fn report(&self) -> ImplicitSteps {
+        let held = self.preconditioner.holds().1;
+        ImplicitSteps {
+            preconditioner_bytes: held.iter().map(|(_, bytes)| bytes).sum(),
+            step_percentile_99: self.durations.of_most().min(self.report.longest_step),
+            ..self.report
+        }
     }
 
     /// What it does in words after `first`, and what it holds at the present state, for `explain`. The first step
@@ -93,10 +139,8 @@ impl Iterations {
         axes.read(world, motion);
         kept.keep(world);
         let formula = &settings.formula;
-        for axis in 0..axes.len() {
-            let is_free = motion.free[axis];
-            space.inertia[axis] =
-                if is_free { formula.inertia(h, motion.mass[axis], motion.damping[axis]) } else { 0.0 };
+        for (node, inertia) in space.inertia.iter_mut().enumerate() {
+            *inertia = motion.inertia(formula, h, node);
         }
         preconditioner.follow(&Operator {
             world,

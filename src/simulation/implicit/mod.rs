@@ -18,6 +18,7 @@ mod report;
 mod springs;
 mod statics;
 mod step;
+mod step_control;
 mod sums;
 mod trial;
 mod unsupported;
@@ -28,26 +29,43 @@ pub use newton::PathPoint;
 pub use report::ImplicitSteps;
 pub(super) use statics::{Attempt, Rest, Statics};
 pub(super) use step::Implicit;
+pub(super) use step_control::{Controlled, StepControl};
 pub(super) use unsupported::{check, check_moves};
 
 use super::Simulation;
 use super::build::after_the_step;
 use crate::components::*;
 use crate::error::Error;
+use step::Taken;
 
 impl Simulation {
     /// What implicit steps have taken so far, and in a static analysis Newton's iterations to equilibrium; `None` where
     /// there are neither.
-    pub fn implicit_steps(&self) -> Option<&ImplicitSteps> {
+    pub fn implicit_steps(&self) -> Option<ImplicitSteps> {
         let of_steps = self.solver.implicit().map(Implicit::report);
         of_steps.or_else(|| self.solver.relaxing()?.iterations())
+    }
+
+    /// Chooses the length of the step that begins now, where that is chosen by errors.
+    pub(super) fn choose_step(&mut self) -> Result<(), Error> {
+        let clock = *self.world.resource::<Clock>();
+        let Some(control) = self.solver.step_control() else { return Ok(()) };
+        let corner = self.world.resource::<Signals>().corner_after(control.after(&clock));
+        match control.choose(&clock, corner, self.scene.duration) {
+            Some((length, last)) => self.change_step(length, last.unwrap_or(self.facts.steps)),
+            None => Ok(()),
+        }
     }
 
     /// Takes one implicit step.
     pub(super) fn implicit_step(&mut self) -> Result<(), Error> {
         let step = self.step_count();
-        let Some(implicit) = self.solver.implicit_mut() else { return Ok(()) };
-        implicit.step(&mut self.world, &mut self.entries)?;
+        while let Some(implicit) = self.solver.implicit_mut() {
+            match implicit.step(&mut self.world, &mut self.entries)? {
+                Taken::Taken => break,
+                Taken::Back => self.choose_step()?,
+            }
+        }
         self.world.resource_mut::<Clock>().step = step + 1;
         if self.facts.on_gpu {
             return self.after_a_step_on_device(step);

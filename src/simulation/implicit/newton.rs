@@ -74,48 +74,46 @@ pub(super) struct Found {
     pub remaining: f64,
 }
 
-/// How many there are.
-const VECTORS: usize = 13;
-
 /// Vectors over all axes that Newton's iterations work with.
 #[derive(Default)]
 pub(super) struct Workspace {
-    /// D.
+    /// D of nodes.
     pub inertia: Vec<f64>,
     /// The equation without D (w − y) and without the forces at the end (N), y = u + h v.
     pub constant: Vec<f64>,
-    /// Where axes are at the end (m), and how far held axes still have to go (m).
+    /// Where axes are at the end (m), and how far held axes still have to go (m); empty where none has.
     pub w: Vec<f64>,
     pub to_go: Vec<f64>,
     /// F − R at w (N).
     pub net: Vec<f64>,
-    /// The residual g (N) at w.
-    g: Vec<f64>,
+    /// The residual g (N) at w; of a step that is found the acceleration at its end (m/s²).
+    pub g: Vec<f64>,
+    /// The right-hand side of a linear system (N), where that is not −g.
     right: Vec<f64>,
-    p: Vec<f64>,
-    from: Vec<f64>,
+    /// The way of an iteration (m); of a step that is found h v at its end (m).
+    pub p: Vec<f64>,
+    /// Where a product looks, and where a line search began (m).
     elsewhere: Vec<f64>,
+    /// Where loads look at them, displacements in a step (m).
     pub steps: Vec<f64>,
-    /// What a step comes to: h v (m), and the acceleration (m/s²).
-    pub step: Vec<f64>,
-    pub acceleration: Vec<f64>,
     vectors: Vectors,
 }
 
 impl Workspace {
     /// Bytes of all vectors, those of conjugate gradients with them.
     pub fn bytes(&self) -> usize {
-        (VECTORS + Vectors::COUNT) * size_of_val(&self.w[..])
+        let Self { inertia, constant, w, to_go, net, g, right, p, elsewhere, steps, vectors } = self;
+        let own = [inertia, constant, w, to_go, net, g, right, p, elsewhere, steps];
+        own.into_iter().map(|vector| size_of_val(&vector[..])).sum::<usize>() + vectors.bytes()
     }
 
     pub fn resize(&mut self, length: usize) {
-        let Self { inertia, constant, w, to_go, net, g, right, p, from, elsewhere, steps, step, acceleration, .. } =
-            self;
-        let all: [_; VECTORS] =
-            [inertia, constant, w, to_go, net, g, right, p, from, elsewhere, steps, step, acceleration];
-        for vector in all {
+        let Self { inertia, constant, w, net, g, p, elsewhere, vectors, .. } = self;
+        inertia.resize(length / 3, 0.0);
+        for vector in [constant, w, net, g, p, elsewhere] {
             vector.resize(length, 0.0);
         }
+        vectors.resize(length);
     }
 }
 
@@ -131,6 +129,8 @@ pub(super) struct Newton<'a, 'w> {
     pub on_device: &'a mut Option<OnDevice>,
     /// The length of the step (s); 1 in statics, where nothing has a velocity.
     pub h: f64,
+    /// Whether forces on the way were no numbers, or elements turned inside out.
+    pub beyond: bool,
     /// How far axes may go in an iteration (m), where who meets whom is looked for in each of them; at rest.
     pub farthest: Option<f64>,
 }
@@ -171,18 +171,18 @@ impl Newton<'_, '_> {
                 return Ok(self.left_of([first, size], solved, remaining));
             }
             if iterations >= self.settings.newton.max(MOST_MOVES) {
-                let what =
-                    format!("what is moved as told is not where it should be after {iterations} Newton iterations");
-                return Err(Lost::Because(what));
+                return Err(Lost::Because(format!(
+                    "what is moved as told is not where it should be after {iterations} Newton iterations{}",
+                    self.what_is_beyond()
+                )));
             }
             let forcing = match (self.settings.newton, iterations) {
                 (1, _) => self.settings.tolerance,
                 (_, 0) => FORCING[0],
                 _ => (DESCENT * (size / before).powi(2)).clamp(FORCING[1], FORCING[0]),
             };
-            self.set_right(moves)?;
             let needed = if self.settings.newton > 1 { 0.5 * enough / size } else { 0.0 };
-            let way = self.solve_linear(forcing.max(needed).min(0.5))?;
+            let way = self.solve_linear(forcing.max(needed).min(0.5), moves)?;
             before = size;
             tried = match self.search(way, &mut size, enough) {
                 Err(Lost::Because(_)) if !moves && self.is_rounding(size)? => {
@@ -193,6 +193,10 @@ impl Newton<'_, '_> {
             remaining = self.sums.norm(&self.space.p) * size / before;
             iterations += 1;
         }
+    }
+
+    fn what_is_beyond(&self) -> &'static str {
+        if self.beyond { ": farther on forces are no numbers, or elements are turned inside out" } else { "" }
     }
 
     /// Whether held axes have not arrived yet.
@@ -227,7 +231,7 @@ impl Newton<'_, '_> {
         let Workspace { w, constant, inertia, .. } = &*self.space;
         let inertial = |axis: usize| {
             let y = self.motion.predicted(axis, self.h);
-            constant[axis] + inertia[axis] * (w[axis] - y)
+            constant[axis] + inertia[axis / 3] * (w[axis] - y)
         };
         let free = (0..w.len()).filter(|&axis| self.motion.free[axis]);
         let of_inertia: f64 = free.map(|axis| inertial(axis).powi(2)).sum();
@@ -258,7 +262,7 @@ impl Newton<'_, '_> {
         let digit = if self.is_f64() { f64::EPSILON } else { f64::from(f32::EPSILON) };
         let Workspace { w, inertia, .. } = &*self.space;
         let free = (0..w.len()).filter(|&axis| self.motion.free[axis]);
-        let square: f64 = free.map(|axis| ((rows[axis].abs() + inertia[axis]) * w[axis]).powi(2)).sum();
+        let square: f64 = free.map(|axis| ((rows[axis].abs() + inertia[axis / 3]) * w[axis]).powi(2)).sum();
         Ok(digit * square.sqrt())
     }
 
@@ -282,6 +286,7 @@ impl Newton<'_, '_> {
         }
         self.space.right = self.signs();
         let Solved { ended, .. } = self.conjugate_gradients(THOROUGH)?;
+        self.space.right = Vec::new();
         Ok(ended == Ended::NegativeCurvature)
     }
 
@@ -292,29 +297,41 @@ impl Newton<'_, '_> {
     }
 
     /// b = −g − K_fc p_c, with what held axes still have to go.
-    fn set_right(&mut self, moves: bool) -> Result<(), Error> {
-        if moves {
-            let to_go = std::mem::take(&mut self.space.to_go);
-            let mut right = std::mem::take(&mut self.space.right);
-            let done = self.stiffness_times(&to_go, &mut right);
-            (self.space.to_go, self.space.right) = (to_go, right);
-            done?;
-        } else {
-            self.space.right.fill(0.0);
-        }
+    fn set_right(&mut self) -> Result<(), Error> {
+        let to_go = std::mem::take(&mut self.space.to_go);
+        let mut right = std::mem::take(&mut self.space.right);
+        right.resize(to_go.len(), 0.0);
+        let done = self.stiffness_times(&to_go, &mut right);
+        (self.space.to_go, self.space.right) = (to_go, right);
         let Workspace { right, g, .. } = &mut *self.space;
         for (axis, right) in right.iter_mut().enumerate() {
             *right = if self.motion.free[axis] { -g[axis] - *right } else { 0.0 };
         }
-        Ok(())
+        done
     }
 
-    /// p ≈ A⁻¹ b on free axes.
-    fn solve_linear(&mut self, tolerance: f64) -> Result<Way, Lost> {
-        let Solved { ended, iterations } = self.conjugate_gradients(tolerance)?;
+    /// −g in the place of b, or back: it is 0 where axes are not free.
+    fn exchange(&mut self) {
+        let Workspace { right, g, .. } = &mut *self.space;
+        std::mem::swap(right, g);
+        right.iter_mut().chain(g).for_each(|force| *force = -*force);
+    }
+
+    /// p ≈ A⁻¹ b on free axes; `moves`: where held axes still have to go.
+    fn solve_linear(&mut self, tolerance: f64, moves: bool) -> Result<Way, Lost> {
+        if moves {
+            self.set_right()?
+        } else {
+            self.exchange()
+        }
+        let solved = self.conjugate_gradients(tolerance);
+        let along = self.sums.dot(&self.space.p, &self.space.right);
+        if !moves {
+            self.exchange();
+        }
+        let Solved { ended, iterations } = solved?;
         self.report.newton_iterations += 1;
         self.report.negative_curvatures += u64::from(ended == Ended::NegativeCurvature);
-        let along = self.sums.dot(&self.space.p, &self.space.right);
         if ended == Ended::NotFinite || !along.is_finite() {
             return Err(Lost::Because("forces near the present state are no numbers".into()));
         }
@@ -344,8 +361,11 @@ impl Newton<'_, '_> {
         }
         let times = |x: &[f64], image: &mut [f64]| -> Result<(), Error> {
             difference(trial, of_step, (w, net), elsewhere, steps, x, image)?;
-            for (((image, x), inertia), &free) in image.iter_mut().zip(x).zip(&*inertia).zip(&motion.free) {
-                *image = if free { *image + inertia * x } else { 0.0 };
+            let nodes = image.as_chunks_mut::<3>().0.iter_mut().zip(x.as_chunks::<3>().0);
+            for (((image, x), inertia), free) in nodes.zip(&*inertia).zip(motion.free.as_chunks::<3>().0) {
+                for axis in 0..3 {
+                    image[axis] = if free[axis] { image[axis] + inertia * x[axis] } else { 0.0 };
+                }
             }
             Ok(())
         };

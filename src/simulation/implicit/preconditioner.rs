@@ -5,6 +5,7 @@ mod columns;
 mod two_level;
 
 use crate::backend::cpu::Cpu;
+use crate::components::{Displacement, Precision};
 use crate::scene::schema;
 use bevy_ecs::prelude::*;
 use block_jacobi::BlockJacobi;
@@ -23,12 +24,20 @@ pub(in crate::simulation) struct Operator<'a> {
     pub bodies: &'a [Entity],
     /// Whether an axis moves freely: not held, and not of an inactive node.
     pub free: &'a [bool],
-    /// D of each axis (N/m): c_m M, and what damping adds; 0 of axes that are not free, and in statics.
+    /// D of each node (N/m): c_m M, and what damping adds; 0 in statics. Of axes that are not free it does not count.
     pub inertia: &'a [f64],
     /// c, the share of K.
     pub stiffness: f64,
     /// The springs that touch.
     pub springs: &'a [SpringSlope<'a>],
+}
+
+impl Operator<'_> {
+    /// The numbers of the run.
+    pub fn precision(&self) -> Precision {
+        let body = self.bodies.first().and_then(|&body| self.world.get::<Displacement>(body));
+        body.map_or(Precision::F64, |u| u.precision())
+    }
 }
 
 /// A spring as a part of the operator.
@@ -102,9 +111,12 @@ impl Preconditioner for Mass {
     }
 
     fn follow(&mut self, operator: &Operator<'_>) {
-        let inverse = |(&inertia, &free): (&f64, &bool)| if free && inertia > 0.0 { 1.0 / inertia } else { 0.0 };
+        let inverse = |(axis, &free): (usize, &bool)| {
+            let inertia = operator.inertia[axis / 3];
+            if free && inertia > 0.0 { 1.0 / inertia } else { 0.0 }
+        };
         self.per_inertia.clear();
-        self.per_inertia.extend(operator.inertia.iter().zip(operator.free).map(inverse));
+        self.per_inertia.extend(operator.free.iter().enumerate().map(inverse));
     }
 
     fn block(&self, node: usize) -> DMat3 {

@@ -7,6 +7,12 @@ use serde::{Deserialize, Serialize};
 pub struct ImplicitSteps {
     /// Steps; in a static analysis attempts to find equilibrium.
     pub steps: u64,
+    /// Steps that were taken back for a shorter one, since their error was too large or they were not found.
+    pub steps_rejected: u64,
+    /// The shortest step (s); 0 in a static analysis.
+    pub smallest_step: f64,
+    /// The longest step (s); 0 in a static analysis.
+    pub largest_step: f64,
     /// Passes over all forces: for residuals, for products and for what steps keep.
     pub passes: u64,
     /// Newton iterations: linear systems that were solved.
@@ -29,6 +35,14 @@ pub struct ImplicitSteps {
     pub longest_step: f64,
     /// How long 99 of 100 steps took at most (s), to 4 %.
     pub step_percentile_99: f64,
+}
+
+impl ImplicitSteps {
+    /// Notes the length of a step (s).
+    pub(super) fn note_length(&mut self, length: f64) {
+        self.smallest_step = if self.largest_step > 0.0 { self.smallest_step.min(length) } else { length };
+        self.largest_step = self.largest_step.max(length);
+    }
 }
 
 /// Parts of an octave, and the shortest time that is told from others (s).

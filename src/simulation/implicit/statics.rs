@@ -23,7 +23,6 @@ use crate::scene::schema::{self, ArcLength};
 use crate::snapshot::Keeping;
 use bevy_ecs::prelude::*;
 use touching::{Growth, Touching};
-use web_time::Instant;
 
 /// Newton's iterations at most: slender bodies spend some twenty on the way.
 const MOST_ITERATIONS: u32 = 60;
@@ -74,8 +73,8 @@ impl Statics {
     }
 
     /// What they took.
-    pub fn report(&self) -> &ImplicitSteps {
-        &self.iterations.report
+    pub fn report(&self) -> ImplicitSteps {
+        self.iterations.report()
     }
 
     /// What it is made of.
@@ -106,7 +105,7 @@ impl Statics {
 
     /// Seeks equilibrium under loads and motions in full, from where bodies are.
     pub fn attempt(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<Attempt, Error> {
-        let started = Instant::now();
+        self.iterations.begin_step();
         bring_state(world)?;
         self.iterations.kept.keep(world);
         world.insert_resource(TrialForces { trying: true, ..TrialForces::default() });
@@ -123,7 +122,7 @@ impl Statics {
             self.iterations.kept.put_back(world, |_| true);
         }
         send_state(world)?;
-        self.iterations.end_step(started);
+        self.iterations.end_step();
         match found {
             Ok(Attempt::Found(mut rest)) => {
                 rest.iterations -= before;
@@ -193,7 +192,7 @@ impl Statics {
         let trial = newton.trial;
         iterations.count(trial.count);
         let path = path?;
-        let Workspace { w, step, acceleration, .. } = &mut iterations.space;
+        let Workspace { w, p: step, g: acceleration, .. } = &mut iterations.space;
         step.fill(0.0);
         acceleration.fill(0.0);
         axes.arrive(trial.world, w, step, acceleration);
@@ -252,7 +251,7 @@ impl Statics {
         };
         grasped.note(trial.world, (&settings.formula, 1.0, motion), space);
         grasped.load(trial.world);
-        let Workspace { w, step, acceleration, .. } = space;
+        let Workspace { w, p: step, g: acceleration, .. } = space;
         step.fill(0.0);
         acceleration.fill(0.0);
         axes.arrive(trial.world, w, step, acceleration);

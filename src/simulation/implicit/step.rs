@@ -12,6 +12,7 @@ use super::kept::Kept;
 use super::newton::{Found, Lost, Settings, Workspace};
 use super::report::ImplicitSteps;
 use super::springs::Springs;
+use super::step_control::StepControl;
 use super::trial::Trial;
 use super::work::Works;
 use crate::components::*;
@@ -19,7 +20,7 @@ use crate::error::{Criterion, Error};
 use crate::observation::Observer;
 use crate::scene::schema::{ImplicitScheme, Inversion, Scene, Solver};
 use bevy_ecs::prelude::*;
-use web_time::Instant;
+use std::ops::Range;
 
 /// What is left of a residual that is warned of.
 const WARNED: f64 = 0.5;
@@ -30,12 +31,21 @@ pub(in crate::simulation) struct Implicit {
     iterations: Iterations,
     springs: Springs,
     works: Option<Works>,
+    control: Option<StepControl>,
+}
+
+/// Whether a step was taken.
+pub(in crate::simulation) enum Taken {
+    Taken,
+    /// All stands as it stood, for a shorter one.
+    Back,
 }
 
 impl Implicit {
     /// What takes the steps of a scene; `None` where they are explicit.
     pub fn of(scene: &Scene, world: &mut World) -> Option<Self> {
-        let Solver::Implicit { scheme, newton, tolerance, preconditioner, budget, .. } = scene.solver else {
+        let Solver::Implicit { scheme, step, adaptive, newton, tolerance, preconditioner, budget } = scene.solver
+        else {
             return None;
         };
         if scene.is_static() {
@@ -45,12 +55,23 @@ impl Implicit {
         let settings = Settings { formula: Formula::of(scheme), newton, tolerance, budget };
         let iterations = Iterations::new(settings, preconditioner, &axes, world);
         let works = scene.output.energies_every.map(|_| Works::default());
-        Some(Self { axes, iterations, springs: Springs::default(), works })
+        let control = adaptive.map(|asked| StepControl::of(asked, step, &axes, world));
+        Some(Self { axes, iterations, springs: Springs::default(), works, control })
+    }
+
+    /// What chooses their lengths by their errors.
+    pub fn control(&self) -> Option<&StepControl> {
+        self.control.as_ref()
+    }
+
+    /// The same, to choose one.
+    pub fn control_mut(&mut self) -> Option<&mut StepControl> {
+        self.control.as_mut()
     }
 
     /// What they took.
-    pub fn report(&self) -> &ImplicitSteps {
-        &self.iterations.report
+    pub fn report(&self) -> ImplicitSteps {
+        self.iterations.report()
     }
 
     /// What it is made of.
@@ -66,37 +87,59 @@ impl Implicit {
             1 => format!("one Newton iteration, solved to {tolerance} of its residual"),
             _ => format!("at most {newton} Newton iterations, to a residual of {tolerance} of all forces"),
         };
-        self.iterations.in_use(format!("{scheme}: {iterations}"), &self.axes, world, passes)
+        let lengths = self.control.as_ref().map_or(String::new(), |control| format!("; {}", control.in_words()));
+        if let Some(works) = &mut self.works {
+            works.begin(world, &self.axes);
+        }
+        let of_works = self.works.as_ref().map_or(0, Works::bytes);
+        let mut in_use = self.iterations.in_use(format!("{scheme}: {iterations}{lengths}"), &self.axes, world, passes);
+        in_use.held.push(("forces at the beginning of a step, for energies", of_works as u64));
+        in_use
     }
 
-    /// Takes the step that begins at the clock's, up to the loads at its end. Where that is not found, all stands as
-    /// it stood.
-    pub fn step(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<(), Error> {
-        let started = Instant::now();
+    /// Takes the step that begins at the clock's, up to the loads at its end. Where that is not found, or its error is
+    /// too large, all stands as it stood.
+    pub fn step(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<Taken, Error> {
+        self.iterations.begin_step();
+        let told = self.iterations.report;
         let clock = *world.resource::<Clock>();
         bring_state(world)?;
         self.iterations.kept.keep(world);
         let found = self.find(world, passes, &clock);
         world.resource_mut::<Clock>().step = clock.step;
         set_trying(world, false);
-        if found.is_err() {
+        let back = match (&found, &mut self.control) {
+            (Ok(None), _) => true,
+            (Err(Lost::Because(_)), Some(control)) => control.cut_back(clock.time_step),
+            _ => false,
+        };
+        if found.is_err() || back {
             self.iterations.kept.put_back(world, |_| true);
         }
         send_state(world)?;
+        if back {
+            self.iterations.take_back(&told);
+            return Ok(Taken::Back);
+        }
         let left = found.map_err(|lost| match lost {
             Lost::Error(error) => error,
             Lost::Because(what) => not_found(world, what),
         })?;
-        self.iterations.end_step(started);
-        if left > WARNED {
+        self.iterations.end_step();
+        self.iterations.report.note_length(clock.time_step);
+        if let Some(left) = left.filter(|left| *left > WARNED) {
             warn_of_residual(world, left);
         }
-        Ok(())
+        if self.control.as_ref().is_some_and(StepControl::is_beyond) {
+            warn_of_error(world);
+        }
+        Ok(Taken::Taken)
     }
 
-    /// Finds the end of the step, and takes it. Gives the share of the residual that is left.
-    fn find(&mut self, world: &mut World, passes: &mut [ScheduledPass], clock: &Clock) -> Result<f64, Lost> {
-        let Self { axes, iterations, springs, works } = self;
+    /// Finds the end of the step, and takes it unless its error is too large. Gives the share of the residual that is
+    /// left, if it was taken.
+    fn find(&mut self, world: &mut World, passes: &mut [ScheduledPass], clock: &Clock) -> Result<Option<f64>, Lost> {
+        let Self { axes, iterations, springs, works, control } = self;
         let (h, formula) = (clock.time_step, iterations.settings.formula);
         let mut trial = Trial { world, passes, axes, springs, step: clock.step, count: 0, elsewhere: false };
         let Iterations { motion, space, .. } = &mut *iterations;
@@ -114,32 +157,35 @@ impl Implicit {
         trial.net(&mut space.net);
         held_axes(trial.world, axes, motion, &mut space.to_go);
         let grasped = Grasped::hold(trial.world, axes, motion, &mut space.to_go);
+        for (node, inertia) in space.inertia.iter_mut().enumerate() {
+            *inertia = motion.inertia(&formula, h, node);
+        }
         for axis in 0..space.w.len() {
-            (space.inertia[axis], space.constant[axis]) = motion.equation(&formula, h, axis, space.net[axis]);
+            space.constant[axis] = motion.constant(&formula, h, axis, space.net[axis]);
             space.w[axis] = motion.predicted(axis, h);
         }
         // loads are those of the end
         trial.world.resource_mut::<Clock>().step += 1;
         set_trying(trial.world, true);
         let mut newton = iterations.newton(trial, h);
-        let left = newton.solve();
+        let found = newton.solve();
         let mut trial = newton.trial;
-        if left.is_ok() {
+        let taken = match &found {
+            Ok(found) => iterations.takes(control.as_mut(), h, found),
+            Err(_) => false,
+        };
+        if taken {
             let Iterations { motion, space, kept, .. } = &mut *iterations;
             keep_forces(&mut trial, (&formula, h, motion), kept, space)?;
             grasped.note(trial.world, (&formula, h, motion), space);
-            let Workspace { w, step, acceleration, .. } = space;
-            for axis in 0..w.len() {
-                let (velocity, of_axis) = motion.arrival(&formula, axis, h, w[axis]);
-                (step[axis], acceleration[axis]) = (h * velocity, of_axis);
-            }
+            let Workspace { w, p: step, g: acceleration, .. } = space;
             axes.arrive(trial.world, w, step, acceleration);
             if let Some(works) = works {
                 works.end(trial.world, axes, motion, w, step, h);
             }
         }
         iterations.count(trial.count);
-        left.map(|Found { left, .. }| left)
+        found.map(|Found { left, .. }| taken.then_some(left))
     }
 }
 
@@ -155,14 +201,24 @@ fn begin(trial: &mut Trial<'_>, motion: &mut Motion, net: &mut [f64], formula: &
     trial.forces(&motion.u, None, net)?;
     if formula.needs_acceleration() {
         for axis in (0..net.len()).filter(|&axis| motion.free[axis]) {
-            motion.a[axis] = -(net[axis] + motion.damping[axis] * motion.v[axis]) / motion.mass[axis];
+            motion.a[axis] = -(net[axis] + motion.damping(axis) * motion.v[axis]) / motion.mass[axis / 3];
         }
     }
     Ok(())
 }
 
-/// How far held axes go in the step (m), as `boundary` has written it.
-pub(super) fn held_axes(world: &World, axes: &Axes, motion: &Motion, to_go: &mut [f64]) {
+/// How far held axes go in the step (m), as `boundary` has written it; nothing where none does.
+pub(super) fn held_axes(world: &World, axes: &Axes, motion: &Motion, to_go: &mut Vec<f64>) {
+    let goes = |(body, range): (Entity, Range<usize>)| {
+        let Some(step) = world.get::<DisplacementIncrement>(body) else { return false };
+        let first = range.start;
+        range.into_iter().any(|axis| motion.held[axis] && step.get(axis - first) != 0.0)
+    };
+    if !axes.each().any(goes) {
+        *to_go = Vec::new();
+        return;
+    }
+    to_go.resize(axes.len(), 0.0);
     for (body, range) in axes.each() {
         let Some(step) = world.get::<DisplacementIncrement>(body) else { continue };
         for i in 0..range.len() {
@@ -205,24 +261,33 @@ fn not_found(world: &mut World, what: String) -> Error {
 
 /// That much of a residual was left.
 fn warn_of_residual(world: &mut World, left: f64) {
-    let clock = *world.resource::<Clock>();
-    let Some(mut memory) = world.get_resource_mut::<GuardMemory>() else { return };
-    if memory.warnings.iter().any(|notice| notice.criterion == "implicit_step") {
-        return;
-    }
     let message = format!(
         "an implicit step left {:.0} % of its residual ({:.0} % are a warning): results are those of a softer body; raise \
          `budget` or `newton`, or take smaller steps",
         100.0 * left,
         100.0 * WARNED
     );
-    memory.warnings.push(Notice {
-        criterion: "implicit_step".into(),
-        part: String::new(),
-        time: clock.time_at(clock.step + 1),
-        step: clock.step + 1,
-        value: left,
-        limit: WARNED,
-        message,
-    });
+    warn(world, "implicit_step", (left, WARNED), message);
+}
+
+/// That a step was taken whose error is too large, for there is none shorter.
+fn warn_of_error(world: &mut World) {
+    let length = world.resource::<Clock>().time_step;
+    let message = format!(
+        "the error of an implicit step of {length:.3e} s is beyond the tolerance of `adaptive`, and the scene allows \
+         none shorter: lower `smallest`, or raise `tolerance`"
+    );
+    warn(world, "implicit_step_error", (length, length), message);
+}
+
+/// Warns, once a run of each kind.
+fn warn(world: &mut World, criterion: &str, (value, limit): (f64, f64), message: String) {
+    let clock = *world.resource::<Clock>();
+    let Some(mut memory) = world.get_resource_mut::<GuardMemory>() else { return };
+    if memory.warnings.iter().any(|notice| notice.criterion == criterion) {
+        return;
+    }
+    let (part, step) = (String::new(), clock.step + 1);
+    let time = clock.time_at(step);
+    memory.warnings.push(Notice { criterion: criterion.into(), part, time, step, value, limit, message });
 }

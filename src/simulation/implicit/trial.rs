@@ -147,7 +147,10 @@ impl Trial<'_> {
 
     /// How far (in units of p) a difference of forces goes along p (m).
     pub fn reach(&self, p: &[f64]) -> f64 {
-        let strain = largest_share(p, &self.axes.heights);
+        let strain = match &self.axes.heights {
+            Reals::F32(heights) => largest_share(p, heights),
+            Reals::F64(heights) => largest_share(p, heights),
+        };
         let precision = self.axes.bodies.first().and_then(|&body| self.world.get::<Displacement>(body));
         let of_precision = match precision.map(|u| u.precision()) {
             Some(Precision::F64) => STRAIN[1],
@@ -158,17 +161,17 @@ impl Trial<'_> {
 }
 
 /// The largest |p|/h of all axes. Eight maxima side by side: one alone waits for each comparison.
-fn largest_share(p: &[f64], heights: &[f64]) -> f64 {
+fn largest_share<T: Copy + Into<f64>>(p: &[f64], heights: &[T]) -> f64 {
     let (chunks, rest) = p.as_chunks::<8>();
     let (of_chunks, of_rest) = heights.as_chunks::<8>();
     let mut largest = [0.0_f64; 8];
     for (p, heights) in chunks.iter().zip(of_chunks) {
         for i in 0..8 {
-            let share = p[i].abs() / heights[i];
+            let share = p[i].abs() / heights[i].into();
             // what is no number is none that is larger
             largest[i] = if share > largest[i] { share } else { largest[i] };
         }
     }
-    let last = rest.iter().zip(of_rest).map(|(p, height)| p.abs() / height);
+    let last = rest.iter().zip(of_rest).map(|(p, &height)| p.abs() / height.into());
     largest.into_iter().chain(last).fold(0.0, f64::max)
 }

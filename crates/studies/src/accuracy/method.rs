@@ -2,7 +2,7 @@
 
 use super::advice::{plain, seconds};
 use serde::Serialize;
-use sinew::scene::schema::{Analysis, ImplicitScheme, Load, Scene, SearchMethod, Solver};
+use sinew::scene::schema::{Analysis, ErrorControl, ImplicitScheme, Load, Scene, SearchMethod, Solver};
 use std::fmt;
 
 /// How the motion is found from step to step, or equilibrium.
@@ -21,6 +21,15 @@ pub enum Method {
         /// Whether a step is one Newton iteration.
         linearized: bool,
     },
+    /// The same by an estimate of their error.
+    Adaptive {
+        /// The formula of a step.
+        scheme: ImplicitScheme,
+        /// The longest step (s).
+        step: f64,
+        /// The error that steps within the longest one add up to.
+        tolerance: f64,
+    },
     /// A search for equilibrium.
     Rest(SearchMethod),
 }
@@ -29,6 +38,8 @@ pub enum Method {
 const FRAMES: [f64; 4] = [0.02, 0.01, 0.005, 0.002];
 /// Where the motion is too short for them: parts of the longest step.
 const PARTS: [f64; 4] = [1.0, 2.0, 4.0, 10.0];
+/// Errors by which steps are chosen.
+const TOLERANCES: [f64; 2] = [1e-2, 1e-3];
 /// An implicit step is worth so many explicit ones at least: it takes more passes over all forces than that.
 const LEAST: f64 = 4.0;
 /// What bodies weigh in units of their mass.
@@ -40,28 +51,40 @@ impl Method {
         match (scene.search().filter(|_| scene.is_static()), &scene.solver) {
             (Some(search), _) => Method::Rest(search.method),
             (None, Solver::Explicit) => Method::Explicit,
-            (None, &Solver::Implicit { scheme, step, newton, .. }) => {
+            (None, &Solver::Implicit { scheme, step, adaptive: None, newton, .. }) => {
                 Method::Implicit { scheme, step, linearized: newton == 1 }
+            }
+            (None, &Solver::Implicit { scheme, step, adaptive: Some(ErrorControl { tolerance, .. }), .. }) => {
+                Method::Adaptive { scheme, step, tolerance }
             }
         }
     }
 
     /// Whether steps solve for their end.
     pub fn is_implicit(self) -> bool {
-        matches!(self, Method::Implicit { .. })
+        matches!(self, Method::Implicit { .. } | Method::Adaptive { .. })
     }
 
     /// The formula of implicit steps, and whether they are linearised.
     pub fn formula(self) -> Option<(ImplicitScheme, bool)> {
         match self {
             Method::Implicit { scheme, linearized, .. } => Some((scheme, linearized)),
+            Method::Adaptive { scheme, .. } => Some((scheme, false)),
+            _ => None,
+        }
+    }
+
+    /// The longest of its steps (s), where these are implicit.
+    pub fn longest_step(self) -> Option<f64> {
+        match self {
+            Method::Implicit { step, .. } | Method::Adaptive { step, .. } => Some(step),
             _ => None,
         }
     }
 
     /// The order of its error in the step.
     pub fn order(self) -> i32 {
-        let first = matches!(self, Method::Implicit { scheme: ImplicitScheme::Euler, .. });
+        let first = self.formula().is_some_and(|(scheme, _)| scheme == ImplicitScheme::Euler);
         if first { 1 } else { 2 }
     }
 
@@ -81,8 +104,13 @@ impl Method {
         let implicit = schemes.into_iter().flat_map(|(scheme, linearized)| {
             steps.iter().map(move |&step| Method::Implicit { scheme, step, linearized })
         });
+        let first = steps.first().copied();
+        let adaptive = [ImplicitScheme::Euler, generalized].into_iter().flat_map(|scheme| {
+            let of = move |tolerance| first.map(|step| Method::Adaptive { scheme, step, tolerance });
+            TOLERANCES.into_iter().filter_map(of)
+        });
         let heavier = HEAVIER.into_iter().map(Method::HeavierMasses);
-        [Method::Explicit].into_iter().chain(heavier).chain(implicit).collect()
+        [Method::Explicit].into_iter().chain(heavier).chain(implicit).chain(adaptive).collect()
     }
 
     /// Gives a scene this method; `step` is the time step (s), `None` to have it found, or to leave an implicit one.
@@ -102,7 +130,16 @@ impl Method {
             Method::Implicit { scheme, step: own, linearized } => {
                 scene.integration.step = None;
                 scene.integration.when_unstable = None;
-                scene.solver = implicit(&scene.solver, scheme, step.unwrap_or(own), linearized);
+                scene.solver = implicit(&scene.solver, scheme, (step.unwrap_or(own), None), linearized);
+            }
+            Method::Adaptive { scheme, step: own, tolerance } => {
+                scene.integration.step = None;
+                scene.integration.when_unstable = None;
+                let step = step.unwrap_or(own);
+                // steps become shorter with the longest one where the error does by their order, and the tolerance is
+                // that of a time so much shorter
+                let tolerance = tolerance * (step / own).powi(self.order() + 1);
+                scene.solver = implicit(&scene.solver, scheme, (step, Some(tolerance)), false);
             }
         }
     }
@@ -127,7 +164,18 @@ const NEWTON: u32 = 20;
 const TOLERANCE: f64 = 1e-3;
 
 /// Implicit steps, with what the scene says of them itself.
-fn implicit(written: &Solver, scheme: ImplicitScheme, step: f64, linearized: bool) -> Solver {
+fn implicit(
+    written: &Solver,
+    scheme: ImplicitScheme,
+    (step, tolerance): (f64, Option<f64>),
+    linearized: bool,
+) -> Solver {
+    let asked = match written {
+        Solver::Implicit { adaptive, .. } => *adaptive,
+        Solver::Explicit => None,
+    };
+    let asked = asked.unwrap_or(ErrorControl { tolerance: 0.0, displacement: None, smallest: None });
+    let adaptive = tolerance.map(|tolerance| ErrorControl { tolerance, ..asked });
     let (newton, tolerance, preconditioner, budget) = match written {
         Solver::Implicit { newton, tolerance, preconditioner, budget, .. } => {
             (*newton, *tolerance, *preconditioner, *budget)
@@ -139,7 +187,7 @@ fn implicit(written: &Solver, scheme: ImplicitScheme, step: f64, linearized: boo
         (false, 1) => NEWTON,
         (false, most) => most,
     };
-    Solver::Implicit { scheme, step, newton, tolerance, preconditioner, budget }
+    Solver::Implicit { scheme, step, adaptive, newton, tolerance, preconditioner, budget }
 }
 
 impl fmt::Display for Method {
@@ -150,13 +198,19 @@ impl fmt::Display for Method {
             Method::Rest(SearchMethod::Relaxation) => f.write_str("relaxation"),
             Method::Rest(SearchMethod::Newton) => f.write_str("Newton"),
             Method::Implicit { scheme, step, linearized } => {
-                let name = match scheme {
-                    ImplicitScheme::Euler => "implicit Euler",
-                    ImplicitScheme::GeneralizedAlpha { .. } => "generalised-α",
-                };
                 let once = if linearized { ", linearised" } else { "" };
-                write!(f, "{name} {}{once}", plain(&seconds(step)))
+                write!(f, "{} {}{once}", name(scheme), plain(&seconds(step)))
+            }
+            Method::Adaptive { scheme, step, tolerance } => {
+                write!(f, "{} to {tolerance:e} in {}", name(scheme), plain(&seconds(step)))
             }
         }
+    }
+}
+
+fn name(scheme: ImplicitScheme) -> &'static str {
+    match scheme {
+        ImplicitScheme::Euler => "implicit Euler",
+        ImplicitScheme::GeneralizedAlpha { .. } => "generalised-α",
     }
 }

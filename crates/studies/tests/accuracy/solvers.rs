@@ -118,6 +118,12 @@ fn slow_loads_are_for_implicit_steps_and_ringing_is_not() {
     let [few, many] = [heavier, written].map(|row| row.measured().unwrap_or_else(|| panic!("{row:?}")).steps as f64);
     // half as many, but that a whole number of steps lies between two samples
     assert!(few < 0.6 * many && error(heavier) < 0.01, "{few} {many} {}", error(heavier));
+    // of ten frames, each of whose errors is at most the tolerance
+    let chosen = ["1e-2", "1e-3"].map(|tolerance| row(&pressed, &format!("generalised-α to {tolerance} in 10 ms")));
+    let steps = chosen.map(|row| row.measured().unwrap_or_else(|| panic!("{row:?}")).steps);
+    println!("{steps:?} steps, {:?} off", chosen.map(error));
+    assert!(error(chosen[0]) < 10.0 * 1e-2 && error(chosen[1]) < 10.0 * 1e-3, "{:?}", chosen.map(error));
+    assert!(steps[0] < steps[1], "{steps:?}");
     // both are good enough: which takes less is the machine's affair, and is said with the times of both
     let said = &pressed.findings.advice;
     let compares = |one: &String| one.starts_with("Implicit steps") && one.contains("of the time of");

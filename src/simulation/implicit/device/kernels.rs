@@ -108,8 +108,8 @@ impl Vectors {
         let node_blocks = numbers("node_blocks", 6 * nodes);
         let partials = numbers("partials", 2 * extent.groups.max(extent.image_groups) as usize);
         // where a node has no element nothing is strained
-        let height = |&height: &f64| if height > 0.0 && height.is_finite() { height as f32 } else { f32::MAX };
-        let heights: Vec<f32> = axes.heights.iter().step_by(3).map(height).collect();
+        let height = |height: f64| if height > 0.0 && height.is_finite() { height as f32 } else { f32::MAX };
+        let heights: Vec<f32> = (0..nodes).map(|node| height(axes.heights.get(3 * node))).collect();
         Self {
             solve,
             solution,

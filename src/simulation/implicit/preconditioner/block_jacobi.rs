@@ -3,6 +3,7 @@
 use super::columns::{Columns, each_column, elements_left};
 use super::{Operator, Preconditioner};
 use crate::backend::cpu::Cpu;
+use crate::components::*;
 use glam::{DMat3, DVec3};
 use std::collections::BTreeMap;
 
@@ -10,17 +11,89 @@ use std::collections::BTreeMap;
 /// elements have gone; and of the springs that touch.
 #[derive(Default)]
 pub(in crate::simulation) struct BlockJacobi {
-    /// Diagonal blocks of K (N/m), a node each.
-    stiffness: Vec<DMat3>,
+    /// Diagonal blocks of K (N/m), a node each; and while they are added up, in all digits.
+    stiffness: Blocks,
+    sums: Vec<DMat3>,
     /// How many elements it is of.
     elements: usize,
-    inverses: Vec<DMat3>,
+    /// Inverses of the blocks (m/N), as their nodes have turned.
+    inverses: Blocks,
     /// What the inverses were made of.
     pub inertia: Vec<f64>,
     pub free: Vec<bool>,
     share: f64,
     /// What springs add to the blocks of nodes that they act on (N/m).
     springs: BTreeMap<usize, DMat3>,
+}
+
+/// Symmetric 3×3 matrices, a node each. Those of a run in f32 are in f32, by their diagonals and yx, zx and zy.
+enum Blocks {
+    F32(Vec<[f32; 6]>),
+    F64(Vec<DMat3>),
+}
+
+impl Default for Blocks {
+    fn default() -> Self {
+        Self::F32(Vec::new())
+    }
+}
+
+impl Blocks {
+    /// Zeros of so many nodes.
+    fn zeros(precision: Precision, nodes: usize) -> Self {
+        match precision {
+            Precision::F32 => Self::F32(vec![[0.0; 6]; nodes]),
+            Precision::F64 => Self::F64(vec![DMat3::ZERO; nodes]),
+        }
+    }
+
+    fn len(&self) -> usize {
+        match self {
+            Self::F32(blocks) => blocks.len(),
+            Self::F64(blocks) => blocks.len(),
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        match self {
+            Self::F32(blocks) => size_of_val(&blocks[..]),
+            Self::F64(blocks) => size_of_val(&blocks[..]),
+        }
+    }
+
+    fn set(&mut self, node: usize, matrix: DMat3) {
+        match self {
+            Self::F32(blocks) => {
+                let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+                let beside = [0.5 * (x.y + y.x), 0.5 * (x.z + z.x), 0.5 * (y.z + z.y)];
+                blocks[node] = [x.x, y.y, z.z, beside[0], beside[1], beside[2]].map(|entry| entry as f32);
+            }
+            Self::F64(blocks) => blocks[node] = matrix,
+        }
+    }
+
+    fn get(&self, node: usize) -> DMat3 {
+        match self {
+            Self::F32(blocks) => widened(&blocks[node]),
+            Self::F64(blocks) => blocks[node],
+        }
+    }
+
+    /// z = B r.
+    fn apply(&self, residual: &[f64], z: &mut [f64]) {
+        let nodes = residual.as_chunks::<3>().0.iter().zip(z.as_chunks_mut::<3>().0);
+        match self {
+            Self::F32(blocks) => {
+                nodes.zip(blocks).for_each(|((r, z), block)| *z = (widened(block) * DVec3::from(*r)).into());
+            }
+            Self::F64(blocks) => nodes.zip(blocks).for_each(|((r, z), block)| *z = (*block * DVec3::from(*r)).into()),
+        }
+    }
+}
+
+fn widened(block: &[f32; 6]) -> DMat3 {
+    let [xx, yy, zz, yx, zx, zy] = block.map(f64::from);
+    DMat3::from_cols(DVec3::new(xx, yx, zx), DVec3::new(yx, yy, zy), DVec3::new(zx, zy, zz))
 }
 
 /// What is another than it was.
@@ -37,7 +110,7 @@ pub(super) enum Changed {
 
 impl Preconditioner for BlockJacobi {
     fn apply(&mut self, _: &Cpu, residual: &[f64], z: &mut [f64]) {
-        apply_blocks(&self.inverses, residual, z);
+        self.apply_to(residual, z);
     }
 
     fn follow(&mut self, operator: &Operator<'_>) {
@@ -50,24 +123,22 @@ impl Preconditioner for BlockJacobi {
     }
 
     fn block(&self, node: usize) -> DMat3 {
-        self.at_rest(node)
+        self.inverses.get(node)
     }
 
     fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
-        let of_nodes = size_of_val(&self.stiffness[..]) + size_of_val(&self.inverses[..]);
+        let of_nodes = self.stiffness.bytes() + self.inverses.bytes();
         let of_axes = size_of_val(&self.inertia[..]) + size_of_val(&self.free[..]);
         ("the 3×3 blocks of nodes".into(), vec![("blocks of nodes", (of_nodes + of_axes) as u64)])
     }
 }
 
-/// z = B r of a matrix a node.
-pub(super) fn apply_blocks(blocks: &[DMat3], residual: &[f64], z: &mut [f64]) {
-    for ((block, r), z) in blocks.iter().zip(residual.chunks_exact(3)).zip(z.chunks_exact_mut(3)) {
-        z.copy_from_slice(&(*block * DVec3::from_slice(r)).to_array());
-    }
-}
-
 impl BlockJacobi {
+    /// z = B r.
+    pub fn apply_to(&self, residual: &[f64], z: &mut [f64]) {
+        self.inverses.apply(residual, z);
+    }
+
     /// What of an operator is another than it was.
     pub fn compare(&mut self, operator: &Operator<'_>) -> Changed {
         let before = (self.stiffness.len() * 3, self.elements);
@@ -85,20 +156,26 @@ impl BlockJacobi {
 
     /// Begins with no stiffness, which comes by columns.
     pub fn begin(&mut self, operator: &Operator<'_>) {
-        self.stiffness.clear();
-        self.stiffness.resize(operator.free.len() / 3, DMat3::ZERO);
+        self.stiffness = Blocks::default();
+        self.sums.clear();
+        self.sums.resize(operator.free.len() / 3, DMat3::ZERO);
     }
 
     /// Adds what a column of all elements of a block is to the displaced node itself.
     pub fn add(&mut self, columns: &Columns<'_>) {
         for row in columns.rows() {
             let node = columns.node(row, columns.corner);
-            *self.stiffness[node].col_mut(columns.axis) += columns.force(row, columns.corner);
+            *self.sums[node].col_mut(columns.axis) += columns.force(row, columns.corner);
         }
     }
 
     /// Follows an operator of which this has changed, and the springs that touch.
     pub fn take(&mut self, operator: &Operator<'_>, changed: Changed) {
+        if !self.sums.is_empty() {
+            self.stiffness = Blocks::zeros(operator.precision(), self.sums.len());
+            let sums = std::mem::take(&mut self.sums).into_iter().enumerate();
+            sums.for_each(|(node, sum)| self.stiffness.set(node, sum));
+        }
         if changed != Changed::Nothing {
             self.share = operator.stiffness;
             self.inertia.clear();
@@ -106,11 +183,12 @@ impl BlockJacobi {
             self.free.clear();
             self.free.extend_from_slice(operator.free);
             self.springs.clear();
-            self.inverses = (0..self.stiffness.len()).map(|node| self.inverse_of(node, DMat3::IDENTITY)).collect();
+            self.inverses = Blocks::zeros(operator.precision(), self.stiffness.len());
+            (0..self.stiffness.len()).for_each(|node| self.turn(node, DMat3::IDENTITY));
         }
         let before = std::mem::replace(&mut self.springs, blocks_of_springs(operator));
         for node in before.keys().chain(self.springs.keys()).copied().collect::<Vec<usize>>() {
-            self.inverses[node] = self.inverse_of(node, DMat3::IDENTITY);
+            self.turn(node, DMat3::IDENTITY);
         }
     }
 
@@ -119,36 +197,36 @@ impl BlockJacobi {
         !self.springs.is_empty()
     }
 
-    /// The inverse of the block of a node that is turned.
-    pub fn turned(&self, node: usize, rotation: DMat3) -> DMat3 {
-        match self.free[3 * node..3 * node + 3] {
-            [true, true, true] if !self.springs.contains_key(&node) => {
-                rotation * self.inverses[node] * rotation.transpose()
+    /// Finds the inverse of the block of a node that has turned; what holds it, and what touches it, does not turn with
+    /// it.
+    pub fn turn(&mut self, node: usize, rotation: DMat3) {
+        let inverse = match self.free[3 * node..3 * node + 3] {
+            [true, true, true] if rotation != DMat3::IDENTITY && !self.springs.contains_key(&node) => {
+                rotation * self.inverse_of(node, DMat3::IDENTITY) * rotation.transpose()
             }
-            [false, false, false] => DMat3::ZERO,
-            // what holds it, and what touches it, does not turn with it
             _ => self.inverse_of(node, rotation),
-        }
-    }
-
-    /// The inverse of the block of a node as it is at rest.
-    pub fn at_rest(&self, node: usize) -> DMat3 {
-        self.inverses[node]
+        };
+        self.inverses.set(node, inverse);
     }
 
     fn inverse_of(&self, node: usize, rotation: DMat3) -> DMat3 {
         let axes = 3 * node..3 * node + 3;
-        let stiffness = rotation * self.stiffness[node] * rotation.transpose();
+        if self.free[axes.clone()] == [false; 3] {
+            return DMat3::ZERO;
+        }
+        let at_rest = self.stiffness.get(node);
+        let is_turned = rotation != DMat3::IDENTITY;
+        let stiffness = if is_turned { rotation * at_rest * rotation.transpose() } else { at_rest };
         let springs = self.springs.get(&node).copied().unwrap_or(DMat3::ZERO);
-        inverse(stiffness * self.share + springs, &self.inertia[axes.clone()], &self.free[axes])
+        inverse(stiffness * self.share + springs, self.inertia[node], &self.free[axes])
     }
 }
 
 /// Of the block of a node with its inertia, on the axes that are free; of its diagonal where that is not positive.
-fn inverse(stiffness: DMat3, inertia: &[f64], free: &[bool]) -> DMat3 {
+fn inverse(stiffness: DMat3, inertia: f64, free: &[bool]) -> DMat3 {
     let mut block = stiffness;
     for i in 0..3 {
-        block.col_mut(i)[i] += inertia[i];
+        block.col_mut(i)[i] += inertia;
         if !free[i] {
             (0..3).for_each(|j| {
                 block.col_mut(i)[j] = 0.0;

@@ -8,7 +8,7 @@ mod coarse;
 mod rotation;
 mod touched;
 
-use super::block_jacobi::{BlockJacobi, Changed, apply_blocks};
+use super::block_jacobi::{BlockJacobi, Changed};
 use super::columns::{each_column, pieces};
 use super::{Operator, Preconditioner, SpringSlope};
 use crate::backend::cpu::Cpu;
@@ -33,23 +33,22 @@ use touched::{MOST_TOUCHED, Touched};
 pub(in crate::simulation) struct TwoLevel {
     fine: BlockJacobi,
     pieces: Vec<Piece>,
-    /// Of each node its piece, and where it stands among the nodes there that move.
+    /// Of each node its piece, and where it stands among the nodes there that move; empty until something touches.
     places: Vec<Option<[u32; 2]>>,
     touched: Touched,
     /// The motions of all aggregates.
     motions: Vec<f64>,
-    /// The inverses of the blocks, turned.
-    inverses: Vec<DMat3>,
     turned: bool,
     /// How often matrices have been made.
     made: u64,
-    /// The residual without what moves pieces as a whole (N).
+    /// The residual without what moves pieces as a whole (N); empty where all of them are held.
     residual: Vec<f64>,
 }
 
 struct Piece {
-    /// All its nodes, among those of all bodies, and where they are at rest (m).
-    nodes: Vec<(usize, DVec3)>,
+    /// Its body, and the first of that's nodes among those of all bodies.
+    body: Entity,
+    first_node: usize,
     coarse: Coarse,
     /// Where its unknowns begin among those of all.
     first: usize,
@@ -59,18 +58,25 @@ struct Piece {
 
 impl Preconditioner for TwoLevel {
     fn apply(&mut self, cpu: &Cpu, residual: &[f64], z: &mut [f64]) {
-        self.residual.copy_from_slice(residual);
         let inertia = &self.fine.inertia;
-        let wholes: Vec<DVec3> = self.pieces.iter().map(|piece| piece.whole(inertia, &mut self.residual)).collect();
-        apply_blocks(&self.inverses, &self.residual, z);
+        let (mut wholes, mut residual) = (Vec::new(), residual);
+        if self.pieces.iter().any(Piece::moves) {
+            self.residual.clear();
+            self.residual.extend_from_slice(residual);
+            wholes.extend(self.pieces.iter().map(|piece| piece.whole(inertia, &mut self.residual)));
+            residual = &self.residual;
+        }
+        self.fine.apply_to(residual, z);
         for piece in &mut self.pieces {
             let own = piece.first..piece.first + piece.coarse.size();
-            piece.coarse.solve(cpu, &self.residual, &mut self.motions[own]);
+            piece.coarse.solve(cpu, residual, &mut self.motions[own]);
         }
         self.touched.correct(&mut self.motions);
-        for (piece, whole) in self.pieces.iter().zip(wholes) {
+        for (number, piece) in self.pieces.iter().enumerate() {
             piece.coarse.carry(&self.motions[piece.first..], &self.fine.free, z);
-            piece.move_as_a_whole(inertia, whole, z);
+            if let Some(&whole) = wholes.get(number) {
+                piece.move_as_a_whole(inertia, whole, z);
+            }
         }
     }
 
@@ -80,25 +86,27 @@ impl Preconditioner for TwoLevel {
         if matches!(changed, Changed::Axes | Changed::Bodies) {
             self.fine.begin(operator);
             self.pieces = find_pieces(operator, &mut self.fine);
-            self.places = places_of(&self.pieces, operator.free.len() / 3);
+            self.places.clear();
             let size = self.pieces.last().map_or(0, |piece| piece.first + piece.coarse.size());
             self.motions.resize(size, 0.0);
         }
         self.fine.take(operator, changed);
         if changed != Changed::Nothing {
             self.made += 1;
-            self.pieces.iter_mut().for_each(|piece| piece.coarse.factorize(&piece.nodes, operator));
+            self.pieces.iter_mut().for_each(|piece| piece.coarse.factorize(operator));
             self.touched.forget();
         }
         self.turn(operator, changed != Changed::Nothing || touches);
         if touches {
+            if self.places.is_empty() {
+                self.places = places_of(&self.pieces, operator.free.len() / 3);
+            }
             self.touch(operator);
         }
-        self.residual.resize(operator.free.len(), 0.0);
     }
 
     fn block(&self, node: usize) -> DMat3 {
-        self.inverses[node]
+        self.fine.block(node)
     }
 
     fn coarse(&self) -> Vec<&Coarse> {
@@ -115,12 +123,13 @@ impl Preconditioner for TwoLevel {
 
     fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
         let (blocks, mut held) = self.fine.holds();
-        let turned = size_of_val(&self.inverses[..]) + size_of_val(&self.residual[..]);
-        let places = size_of_val(&self.places[..]) + size_of_val(&self.motions[..]) + self.touched.bytes();
-        let of_pieces = self.pieces.iter().map(|piece| piece.coarse.bytes() + size_of_val(&piece.nodes[..]));
+        let places = size_of_val(&self.places[..])
+            + size_of_val(&self.residual[..])
+            + size_of_val(&self.motions[..])
+            + self.touched.bytes();
+        let of_pieces = self.pieces.iter().map(|piece| piece.coarse.bytes());
         let aggregates: usize = self.pieces.iter().map(|piece| piece.coarse.size() / RIGID).sum();
         let matrices: usize = self.pieces.iter().map(|piece| piece.coarse.bytes_of_matrix()).sum();
-        held.push(("blocks that have turned", turned as u64));
         held.push(("aggregates", (places + of_pieces.sum::<usize>()) as u64));
         held.push(("coarse matrices with their factors", matrices as u64));
         let coarse = format!("{aggregates} aggregates of nodes with {RIGID} rigid motions each");
@@ -143,7 +152,7 @@ impl TwoLevel {
         let on = parts.filter_map(|&(first, _)| {
             let [piece, own] = place(first)?;
             let Piece { coarse, first, .. } = &self.pieces[piece];
-            Some(first / RIGID + coarse.aggregates.of_node[own])
+            Some(first / RIGID + coarse.aggregates.of(own))
         });
         let aggregates: Vec<usize> = on.collect::<BTreeSet<usize>>().into_iter().collect();
         let (aggregates, springs) = match aggregates.len() {
@@ -183,33 +192,21 @@ impl TwoLevel {
     }
 
     fn turn(&mut self, operator: &Operator<'_>, again: bool) {
-        let places: Vec<f64> = operator.bodies.iter().flat_map(|&body| place_of(operator, body)).collect();
-        let displacement = |node: usize| DVec3::from_slice(&places[3 * node..]);
         let mut turned = false;
-        for piece in &mut self.pieces {
-            turned |= piece.coarse.turn(displacement);
+        for Piece { coarse, body, first_node, .. } in &mut self.pieces {
+            let (rest, displacement) =
+                (operator.world.get::<RestPosition>(*body), operator.world.get::<Displacement>(*body));
+            if let (Some(rest), Some(displacement)) = (rest, displacement) {
+                turned |= coarse.turn(|node| (rest.0[node - *first_node], displacement.vector(node - *first_node)));
+            }
         }
         if turned || self.turned || again {
-            self.inverses.clear();
-            self.inverses.extend((0..operator.free.len() / 3).map(|node| self.fine.at_rest(node)));
-        }
-        if turned {
             for (node, rotation) in self.pieces.iter().flat_map(|piece| piece.coarse.turned_nodes()) {
-                if rotation != DMat3::IDENTITY {
-                    self.inverses[node] = self.fine.turned(node, rotation);
-                }
+                self.fine.turn(node, rotation);
             }
         }
         self.turned = turned;
     }
-}
-
-/// Where the nodes of a body have gone (m).
-fn place_of(operator: &Operator<'_>, body: Entity) -> Vec<f64> {
-    let Some(displacement) = operator.world.get::<Displacement>(body) else { return Vec::new() };
-    let mut places = vec![0.0; displacement.len()];
-    displacement.read(&mut places);
-    places
 }
 
 /// Whether a spring acts on something that is at rest, or led.
@@ -219,6 +216,16 @@ fn is_outside(spring: &SpringSlope<'_>, is_led: impl Fn(usize) -> bool) -> bool 
 }
 
 impl Piece {
+    /// Its nodes, among those of all bodies; all that move.
+    fn each_node(&self) -> impl Iterator<Item = usize> + '_ {
+        self.coarse.nodes.iter().map(|&node| node as usize)
+    }
+
+    /// Whether there is an axis that nothing holds.
+    fn moves(&self) -> bool {
+        self.per_inertia() != DVec3::ZERO
+    }
+
     /// Along each axis that nothing holds, 1/ΣD of it (m/N); else 0.
     fn per_inertia(&self) -> DVec3 {
         if self.is_held { DVec3::ZERO } else { self.coarse.per_inertia }
@@ -230,10 +237,10 @@ impl Piece {
         if per_inertia == DVec3::ZERO {
             return DVec3::ZERO;
         }
-        let force: DVec3 = self.nodes.iter().map(|(node, _)| DVec3::from_slice(&residual[3 * node..])).sum();
+        let force: DVec3 = self.each_node().map(|node| DVec3::from_slice(&residual[3 * node..])).sum();
         let motion = force * per_inertia;
-        for (node, _) in &self.nodes {
-            (0..3).for_each(|i| residual[3 * node + i] -= inertia[3 * node + i] * motion[i]);
+        for node in self.each_node() {
+            (0..3).for_each(|i| residual[3 * node + i] -= inertia[node] * motion[i]);
         }
         motion
     }
@@ -245,10 +252,10 @@ impl Piece {
         if per_inertia == DVec3::ZERO {
             return;
         }
-        let left = |axis: usize| right[axis] - inertia[axis] * x[axis];
-        let sum = |i: usize| -> f64 { self.nodes.iter().map(|(node, _)| left(3 * node + i)).sum() };
+        let left = |axis: usize| right[axis] - inertia[axis / 3] * x[axis];
+        let sum = |i: usize| -> f64 { self.each_node().map(|node| left(3 * node + i)).sum() };
         let motion = DVec3::new(sum(0), sum(1), sum(2)) * per_inertia;
-        for (node, _) in &self.nodes {
+        for node in self.each_node() {
             (0..3).for_each(|i| x[3 * node + i] += motion[i]);
         }
     }
@@ -259,9 +266,9 @@ impl Piece {
         if per_inertia == DVec3::ZERO {
             return;
         }
-        let weighted = |node: usize| DVec3::from_slice(&inertia[3 * node..]) * DVec3::from_slice(&z[3 * node..]);
-        let mean = self.nodes.iter().map(|(node, _)| weighted(*node)).sum::<DVec3>() * per_inertia;
-        for (node, _) in &self.nodes {
+        let weighted = |node: usize| DVec3::from_slice(&z[3 * node..]) * inertia[node];
+        let mean = self.each_node().map(weighted).sum::<DVec3>() * per_inertia;
+        for node in self.each_node() {
             (0..3).for_each(|i| z[3 * node + i] += motion[i] - mean[i]);
         }
     }
@@ -276,7 +283,7 @@ fn find_pieces(operator: &Operator<'_>, fine: &mut BlockJacobi) -> Vec<Piece> {
             let nodes: Vec<(usize, DVec3)> = nodes.into_iter().map(|node| (first + node, rest.0[node])).collect();
             let coarse = Coarse::of(&nodes, operator);
             let end = unknowns + coarse.size();
-            all.push(Piece { nodes, coarse, first: unknowns, is_held: false });
+            all.push(Piece { body, first_node: first, coarse, first: unknowns, is_held: false });
             unknowns = end;
         }
         first += rest.0.len();
@@ -294,8 +301,8 @@ fn find_pieces(operator: &Operator<'_>, fine: &mut BlockJacobi) -> Vec<Piece> {
 fn places_of(pieces: &[Piece], nodes: usize) -> Vec<Option<[u32; 2]>> {
     let mut places = vec![None; nodes];
     for (number, piece) in pieces.iter().enumerate() {
-        let nodes = piece.coarse.nodes.iter().enumerate();
-        nodes.for_each(|(own, &node)| places[node] = Some([number as u32, own as u32]));
+        let nodes = piece.coarse.members().enumerate();
+        nodes.for_each(|(own, (node, ..))| places[node] = Some([number as u32, own as u32]));
     }
     places
 }

@@ -146,10 +146,8 @@ impl Engine<'_> {
         let summary = simulation.summary("calibration").map_err(refusal)?;
         let setup = (started.elapsed().as_secs_f64() - preload).max(0.0);
         let found = self.file.scene.integration.safety * summary.stable_step;
-        let step = match kind.method {
-            Method::Implicit { step, .. } => step,
-            _ => longer.unwrap_or(self.file.scene.integration.step.map_or(found, |step| step.min(found))),
-        };
+        let explicit = || longer.unwrap_or(self.file.scene.integration.step.map_or(found, |step| step.min(found)));
+        let step = kind.method.longest_step().unwrap_or_else(explicit);
         let steps = simulation.planned_steps();
         if self.sampling.is_none() {
             let steps = (self.file.scene.duration / step * kind.mesh.value() / mesh.value()) as u64;
@@ -167,7 +165,12 @@ impl Engine<'_> {
             taken += march::timed(&mut simulation, now)?;
             count = if scene.scene.is_static() { each } else { (count * 2).min(4000) };
         }
-        let seconds_a_step = taken / simulation.step_count().max(1) as f64;
+        // where steps are chosen by their errors, of the longest as many as were simulated
+        let count = match kind.method {
+            Method::Adaptive { step, .. } => simulation.time() / step,
+            _ => simulation.step_count() as f64,
+        };
+        let seconds_a_step = if count > 0.0 { taken / count } else { taken };
         let started = Instant::now();
         simulation.energies().map_err(refusal)?;
         let one = started.elapsed().as_secs_f64();

@@ -177,7 +177,7 @@ impl Engine<'_> {
     /// is written, which may be meant to go beyond.
     fn step(&self, configuration: &Configuration, options: &Options) -> Result<f64, Refusal> {
         match configuration.method {
-            Method::Implicit { step, .. } => return Ok(step),
+            Method::Implicit { step, .. } | Method::Adaptive { step, .. } => return Ok(step),
             Method::HeavierMasses(times) => {
                 let usual = Configuration { method: Method::Explicit, ..configuration.clone() };
                 return Ok(f64::from(times).sqrt() * self.step(&usual, options)?);

@@ -9,8 +9,8 @@ pub const RIGID: usize = 6;
 /// Which aggregate each of some nodes is in, and where.
 #[derive(Default)]
 pub struct Aggregates {
-    /// Of each node.
-    pub of_node: Vec<usize>,
+    /// Of each node, until they are sorted.
+    pub of_node: Vec<u32>,
     /// From the middle of its aggregate to each node, over the aggregate's extent.
     pub arm: Vec<DVec3>,
     /// Aggregates of how many nodes each.
@@ -22,7 +22,7 @@ pub struct Aggregates {
 impl Aggregates {
     /// Halves at the median of the longest extent until no group has more than `most` nodes: the same for the same
     /// positions (m).
-    pub fn of(positions: &[DVec3], most: usize) -> Self {
+    pub fn within(positions: &[DVec3], most: usize) -> Self {
         let mut new =
             Self { of_node: vec![0; positions.len()], arm: vec![DVec3::ZERO; positions.len()], ..Self::default() };
         let mut waiting = vec![(0..positions.len()).collect::<Vec<usize>>()];
@@ -41,7 +41,7 @@ impl Aggregates {
                 let middle = nodes.iter().map(|&node| positions[node]).sum::<DVec3>() / nodes.len() as f64;
                 let length = extent.max_element().max(f64::MIN_POSITIVE);
                 for &node in &nodes {
-                    (new.of_node[node], new.arm[node]) = (new.sizes.len(), (positions[node] - middle) / length);
+                    (new.of_node[node], new.arm[node]) = (new.sizes.len() as u32, (positions[node] - middle) / length);
                 }
                 new.sizes.push(nodes.len());
             }
@@ -53,7 +53,7 @@ impl Aggregates {
     pub fn sort(&mut self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.of_node.len()).collect();
         order.sort_by_key(|&node| self.of_node[node]);
-        self.of_node = order.iter().map(|&node| self.of_node[node]).collect();
+        self.of_node = Vec::new();
         self.arm = order.iter().map(|&node| self.arm[node]).collect();
         let mut end = 0;
         let range = |size: &usize| {
@@ -62,6 +62,11 @@ impl Aggregates {
         };
         self.ranges = self.sizes.iter().map(range).collect();
         order
+    }
+
+    /// The aggregate of a node of those that are sorted.
+    pub fn of(&self, own: usize) -> usize {
+        self.ranges.partition_point(|range| range.end <= own)
     }
 
     /// How many there are.

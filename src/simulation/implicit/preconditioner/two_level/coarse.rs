@@ -5,6 +5,7 @@ use super::aggregates::{Aggregates, RIGID, motions};
 use super::cholesky::Cholesky;
 use super::rotation::{angle, rotation};
 use crate::backend::cpu::Cpu;
+use crate::components::Reals;
 use glam::{DMat3, DVec3};
 
 /// Nodes of an aggregate at most, as long as a piece has no more aggregates than that: the matrix is dense.
@@ -16,17 +17,17 @@ const HARDLY_TURNED: f64 = 0.035;
 /// The coarse level of a piece.
 pub(in crate::simulation::implicit) struct Coarse {
     /// Its nodes that move along some axis, among those of all bodies, one aggregate after the other.
-    pub nodes: Vec<usize>,
-    /// Where they are at rest (m).
-    rest: Vec<DVec3>,
+    pub nodes: Vec<u32>,
     pub aggregates: Aggregates,
+    /// The arms of its nodes at rest (see [`Aggregates::arm`]).
+    arms: Reals,
     /// Pᵀ K P: columns from the diagonal down, one after the other.
     pub stiffness: Vec<f64>,
     factor: Cholesky,
-    /// How each aggregate has turned, and the arms of nodes as they are then.
+    /// How each aggregate has turned.
     rotations: Vec<DMat3>,
-    arms: Vec<DVec3>,
-    /// Along each axis that nothing holds, 1/ΣD of the piece (m/N); else 0.
+    /// Along which axes nothing holds the piece, and 1/ΣD of it there (m/N); else 0.
+    all_free: [bool; 3],
     pub per_inertia: DVec3,
 }
 
@@ -44,48 +45,47 @@ impl Coarse {
     /// Of the nodes of a piece, with their rest positions (m); without its stiffness.
     pub fn of(piece: &[(usize, DVec3)], operator: &Operator<'_>) -> Self {
         let moves = |node: usize| operator.free[3 * node..3 * node + 3].contains(&true);
-        let (mut nodes, mut rest): (Vec<usize>, Vec<DVec3>) =
-            piece.iter().filter(|(node, _)| moves(*node)).copied().unzip();
+        let (nodes, rest): (Vec<usize>, Vec<DVec3>) = piece.iter().filter(|(node, _)| moves(*node)).copied().unzip();
         let most = NODES_AN_AGGREGATE.max(nodes.len().div_ceil(MOST_AGGREGATES));
-        let mut aggregates = Aggregates::of(&rest, most);
+        let mut aggregates = Aggregates::within(&rest, most);
         let order = aggregates.sort();
-        nodes = order.iter().map(|&own| nodes[own]).collect();
-        rest = order.iter().map(|&own| rest[own]).collect();
+        let nodes = order.iter().map(|&own| nodes[own] as u32).collect();
+        let arms = std::mem::take(&mut aggregates.arm).into_iter().flat_map(|arm| arm.to_array());
+        let arms = Reals::from_f64(operator.precision(), arms);
+        let all_free = [0, 1, 2].map(|axis| piece.iter().all(|(node, _)| operator.free[3 * node + axis]));
         let size = RIGID * aggregates.count();
         let mut new = Self {
             stiffness: vec![0.0; size * (size + 1) / 2],
             factor: Cholesky::default(),
             rotations: vec![DMat3::IDENTITY; aggregates.count()],
-            arms: aggregates.arm.clone(),
+            all_free,
             per_inertia: DVec3::ZERO,
             nodes,
-            rest,
             aggregates,
+            arms,
         };
-        new.find_inertia(piece, operator);
+        new.find_inertia(operator);
         new
     }
 
-    /// Which axes nothing holds, and how much inertia there is along them.
-    fn find_inertia(&mut self, piece: &[(usize, DVec3)], operator: &Operator<'_>) {
-        for axis in 0..3 {
-            let all_free = piece.iter().all(|(node, _)| operator.free[3 * node + axis]);
-            let sum: f64 = piece.iter().map(|(node, _)| operator.inertia[3 * node + axis]).sum();
-            self.per_inertia[axis] = if all_free && sum > 0.0 { 1.0 / sum } else { 0.0 };
-        }
+    /// How much inertia there is along axes that nothing holds.
+    fn find_inertia(&mut self, operator: &Operator<'_>) {
+        let sum: f64 = self.nodes.iter().map(|&node| operator.inertia[node as usize]).sum();
+        let per_inertia = if sum > 0.0 { 1.0 / sum } else { 0.0 };
+        self.per_inertia = DVec3::from_array(self.all_free.map(|all_free| if all_free { per_inertia } else { 0.0 }));
     }
 
     /// Makes the factor of Pᵀ (D + c K) P.
-    pub fn factorize(&mut self, piece: &[(usize, DVec3)], operator: &Operator<'_>) {
-        self.find_inertia(piece, operator);
+    pub fn factorize(&mut self, operator: &Operator<'_>) {
+        self.find_inertia(operator);
         let size = self.size();
         let entries = (0..size).flat_map(|row| (0..=row).map(move |column| start(column, size) + row - column));
         let mut matrix: Vec<f64> = entries.map(|entry| self.stiffness[entry] * operator.stiffness).collect();
-        for (own, &node) in self.nodes.iter().enumerate() {
-            let first = RIGID * self.aggregates.of_node[own];
+        for (node, aggregate, arm) in self.members() {
+            let first = RIGID * aggregate;
             for axis in (0..3).filter(|axis| operator.free[3 * node + axis]) {
-                let motion = motions(self.aggregates.arm[own], axis);
-                let inertia = operator.inertia[3 * node + axis];
+                let motion = motions(arm, axis);
+                let inertia = operator.inertia[node];
                 for (i, j) in (0..RIGID).flat_map(|i| (0..=i).map(move |j| (i, j))) {
                     matrix[place(first + i, first + j)] += inertia * motion[i] * motion[j];
                 }
@@ -97,9 +97,9 @@ impl Coarse {
     /// How far a part of a node's motion along an axis goes with each motion of its aggregate, as that has turned: its
     /// first unknown among those of the piece, and the ways.
     pub fn ways(&self, own: usize, axis: usize, part: f64) -> (usize, [f64; RIGID]) {
-        let aggregate = self.aggregates.of_node[own];
+        let aggregate = self.aggregates.of(own);
         let back = self.rotations[aggregate].transpose().col(axis) * part;
-        let turn = self.aggregates.arm[own].cross(back);
+        let turn = self.arms.vector(own).cross(back);
         (RIGID * aggregate, [back.x, back.y, back.z, turn.x, turn.y, turn.z])
     }
 
@@ -108,36 +108,34 @@ impl Coarse {
         self.factor.column(unknown)
     }
 
-    /// Turns aggregates as their nodes have turned, at displacements (m). Whether any has.
-    pub fn turn(&mut self, displacement: impl Fn(usize) -> DVec3) -> bool {
-        let count = self.aggregates.count();
-        let mut middles = vec![[DVec3::ZERO; 2]; count];
-        let mut shapes = vec![DMat3::ZERO; count];
-        let places: Vec<DVec3> =
-            self.nodes.iter().zip(&self.rest).map(|(&node, rest)| *rest + displacement(node)).collect();
-        for (own, &aggregate) in self.aggregates.of_node.iter().enumerate() {
-            let share = 1.0 / self.aggregates.sizes[aggregate] as f64;
-            middles[aggregate][0] += share * self.rest[own];
-            middles[aggregate][1] += share * places[own];
-        }
-        for (own, &aggregate) in self.aggregates.of_node.iter().enumerate() {
-            let (rest, x) = (self.rest[own] - middles[aggregate][0], places[own] - middles[aggregate][1]);
-            shapes[aggregate] += DMat3::from_cols(x * rest.x, x * rest.y, x * rest.z);
-        }
-        let turned = |shape: DMat3| rotation(shape).filter(|rotation| angle(rotation) > HARDLY_TURNED);
-        let found: Vec<Option<DMat3>> = shapes.into_iter().map(turned).collect();
-        let any = found.iter().any(Option::is_some);
-        self.rotations = found.into_iter().map(|rotation| rotation.unwrap_or(DMat3::IDENTITY)).collect();
-        for (own, arm) in self.arms.iter_mut().enumerate() {
-            *arm = self.rotations[self.aggregates.of_node[own]] * self.aggregates.arm[own];
+    /// Turns aggregates as their nodes have turned, which were at rest and have been displaced so far (m). Whether any
+    /// has.
+    pub fn turn(&mut self, moved: impl Fn(usize) -> (DVec3, DVec3)) -> bool {
+        let mut any = false;
+        for (range, turned) in self.aggregates.ranges.iter().zip(&mut self.rotations) {
+            let nodes = || self.nodes[range.clone()].iter().map(|&node| moved(node as usize));
+            let (mut middles, share) = ([DVec3::ZERO; 2], 1.0 / range.len() as f64);
+            for (rest, displacement) in nodes() {
+                middles[0] += share * rest;
+                middles[1] += share * (rest + displacement);
+            }
+            let mut shape = DMat3::ZERO;
+            for (rest, displacement) in nodes() {
+                let (x, rest) = (rest + displacement - middles[1], rest - middles[0]);
+                shape += DMat3::from_cols(x * rest.x, x * rest.y, x * rest.z);
+            }
+            let found = rotation(shape).filter(|rotation| angle(rotation) > HARDLY_TURNED);
+            any |= found.is_some();
+            *turned = found.unwrap_or(DMat3::IDENTITY);
         }
         any
     }
 
     /// Its nodes, among those of all bodies, each with its aggregate and its arm at rest.
     pub fn members(&self) -> impl Iterator<Item = (usize, usize, DVec3)> + '_ {
-        let of_aggregates = self.aggregates.of_node.iter().zip(&self.aggregates.arm);
-        self.nodes.iter().zip(of_aggregates).map(|(&node, (&aggregate, &arm))| (node, aggregate, arm))
+        self.aggregates.ranges.iter().enumerate().flat_map(move |(aggregate, range)| {
+            range.clone().map(move |own| (self.nodes[own] as usize, aggregate, self.arms.vector(own)))
+        })
     }
 
     /// How each aggregate has turned.
@@ -162,13 +160,15 @@ impl Coarse {
 
     /// Bytes of what belongs to its nodes and aggregates.
     pub fn bytes(&self) -> usize {
-        let of_nodes = size_of_val(&self.nodes[..]) + size_of_val(&self.rest[..]) + size_of_val(&self.arms[..]);
-        of_nodes + size_of_val(&self.rotations[..]) + self.aggregates.bytes()
+        size_of_val(&self.nodes[..])
+            + self.arms.bytes().len()
+            + size_of_val(&self.rotations[..])
+            + self.aggregates.bytes()
     }
 
     /// The nodes with how they have turned.
     pub fn turned_nodes(&self) -> impl Iterator<Item = (usize, DMat3)> + '_ {
-        self.nodes.iter().zip(&self.aggregates.of_node).map(|(&node, &aggregate)| (node, self.rotations[aggregate]))
+        self.members().map(|(node, aggregate, _)| (node, self.rotations[aggregate]))
     }
 
     /// A⁻¹ Pᵀ r, of a residual r (N).
@@ -176,10 +176,12 @@ impl Coarse {
         let of_aggregates = self.rotations.iter().zip(&self.aggregates.ranges);
         for (sums, (rotation, range)) in motions.chunks_exact_mut(RIGID).zip(of_aggregates) {
             let (mut force, mut turn) = (DVec3::ZERO, DVec3::ZERO);
-            for (&node, arm) in self.nodes[range.clone()].iter().zip(&self.arms[range.clone()]) {
-                let r = DVec3::from_slice(&residual[3 * node..]);
+            let is_turned = *rotation != DMat3::IDENTITY;
+            for own in range.clone() {
+                let r = DVec3::from_slice(&residual[3 * self.nodes[own] as usize..]);
+                let arm = self.arms.vector(own);
                 force += r;
-                turn += arm.cross(r);
+                turn += if is_turned { *rotation * arm } else { arm }.cross(r);
             }
             sums[..3].copy_from_slice(&(rotation.transpose() * force).to_array());
             sums[3..].copy_from_slice(&(rotation.transpose() * turn).to_array());
@@ -192,8 +194,10 @@ impl Coarse {
         let of_aggregates = self.rotations.iter().zip(&self.aggregates.ranges);
         for (motion, (rotation, range)) in motions.chunks_exact(RIGID).zip(of_aggregates) {
             let (moved, turned) = (*rotation * DVec3::from_slice(motion), *rotation * DVec3::from_slice(&motion[3..]));
-            for (&node, &arm) in self.nodes[range.clone()].iter().zip(&self.arms[range.clone()]) {
-                let step = (moved + turned.cross(arm)).to_array();
+            let is_turned = *rotation != DMat3::IDENTITY;
+            for own in range.clone() {
+                let (node, arm) = (self.nodes[own] as usize, self.arms.vector(own));
+                let step = (moved + turned.cross(if is_turned { *rotation * arm } else { arm })).to_array();
                 let (z, free) = (&mut z[3 * node..3 * node + 3], &free[3 * node..3 * node + 3]);
                 for i in 0..3 {
                     z[i] += if free[i] { step[i] } else { 0.0 };

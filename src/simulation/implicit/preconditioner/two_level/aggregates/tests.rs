@@ -6,9 +6,9 @@ fn grid(n: usize) -> Vec<DVec3> {
 
 #[test]
 fn aggregates_are_small_and_have_every_node() {
-    let aggregates = Aggregates::of(&grid(11), 30);
+    let aggregates = Aggregates::within(&grid(11), 30);
     let mut sizes = vec![0; aggregates.count()];
-    aggregates.of_node.iter().for_each(|&aggregate| sizes[aggregate] += 1);
+    aggregates.of_node.iter().for_each(|&aggregate| sizes[aggregate as usize] += 1);
     assert_eq!(sizes, aggregates.sizes);
     assert_eq!(sizes.iter().sum::<usize>(), 1331);
     assert!(sizes.iter().all(|size| (10..=30).contains(size)), "{sizes:?}");
@@ -18,7 +18,7 @@ fn aggregates_are_small_and_have_every_node() {
 #[test]
 fn motions_are_rigid() {
     let positions = grid(4);
-    let aggregates = Aggregates::of(&positions, 30);
+    let aggregates = Aggregates::within(&positions, 30);
     let turn = DVec3::new(0.3, -0.7, 0.2);
     for a in 0..positions.len() {
         for b in (0..positions.len()).filter(|&b| aggregates.of_node[a] == aggregates.of_node[b]) {

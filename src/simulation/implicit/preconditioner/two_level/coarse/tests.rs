@@ -4,10 +4,10 @@ impl Coarse {
     /// Compares the matrix with what products of K with all motions of all aggregates make.
     pub fn compare_with(&self, operator: &Operator<'_>, mut times: impl FnMut(&[f64], &mut [f64])) {
         let along = |column: usize, vector: &mut [f64]| {
-            for (own, &node) in self.nodes.iter().enumerate() {
-                if self.aggregates.of_node[own] == column / RIGID {
+            for (node, aggregate, arm) in self.members() {
+                if aggregate == column / RIGID {
                     for axis in (0..3).filter(|axis| operator.free[3 * node + axis]) {
-                        vector[3 * node + axis] = motions(self.aggregates.arm[own], axis)[column % RIGID];
+                        vector[3 * node + axis] = motions(arm, axis)[column % RIGID];
                     }
                 }
             }
