@@ -65,7 +65,8 @@ impl Surfaces {
             Some([]) => return,
             Some([only]) => {
                 let of = (now, point, point.place(now.places));
-                if self.face_alone(of, listed, usize::from(*only), (&reach, edge), faced) {
+                let only = (usize::from(*only), short.is_turned_away(0));
+                if self.face_alone(of, listed, only, (&reach, edge), faced) {
                     return;
                 }
             }
@@ -89,7 +90,7 @@ impl Surfaces {
         if let Some(places) = places {
             candidates.find(places.iter().map(|&place| usize::from(place)));
             faced.wakes = short.wakes;
-            if places.len() > 1 && self.face_at_a_glance((now, point, at), (&candidates, places), &reach, faced) {
+            if places.len() > 1 && self.face_at_a_glance((now, point, at), (&candidates, short), &reach, faced) {
                 return;
             }
         }
@@ -126,7 +127,10 @@ impl Surfaces {
                     true => listed.distances[place],
                     false => candidates.nearest(place).1 - listed.nearer,
                 };
-                *short = Shortlist::of(listed.triangles.len(), away, nearest);
+                let turned = |place: usize| {
+                    point.triangle.is_none() && self.stays_turned_away(now, point, listed.triangles[place], stays.moved)
+                };
+                *short = Shortlist::of(listed.triangles.len(), away, nearest, turned);
             }
         }
         let [first, second] = way.finish();
@@ -140,7 +144,7 @@ impl Surfaces {
         &self,
         of: (Placed<'_>, &Point, DVec3),
         listed: Listed<'_>,
-        place: usize,
+        (place, turned): (usize, bool),
         (reach, edge): (&impl Fn(u32) -> f64, f64),
         faced: &mut Faced,
     ) -> bool {
@@ -158,7 +162,7 @@ impl Surfaces {
         if found.part != 0 && distance > ON_IT * edge {
             return false;
         }
-        self.face_only(of, triangle, &found, [depth, reach], faced)
+        self.face_only(of, (triangle, &found, turned), [depth, reach], faced)
     }
 
     /// The same where all triangles that matter but one at most are far off or beside another, and the point is in
@@ -166,12 +170,12 @@ impl Surfaces {
     fn face_at_a_glance(
         &self,
         of: (Placed<'_>, &Point, DVec3),
-        (candidates, places): (&Candidates<'_, '_>, &[u8]),
+        (candidates, short): (&Candidates<'_, '_>, &Shortlist),
         reach: &impl Fn(u32) -> f64,
         faced: &mut Faced,
     ) -> bool {
         let (listed, mut only) = (candidates.listed, None);
-        for (number, place) in places.iter().map(|&place| usize::from(place)).enumerate() {
+        for (number, place) in short.places().unwrap_or_default().iter().map(|&place| usize::from(place)).enumerate() {
             if listed.is_far(place) {
                 faced.wakes = faced.wakes.min(listed.distances[place]);
                 continue;
@@ -186,13 +190,13 @@ impl Surfaces {
             if only.is_some() || !is_before {
                 return false;
             }
-            only = Some((triangle, &nearest.0));
+            only = Some((triangle, &nearest.0, short.is_turned_away(number)));
         }
         match only {
             None => true,
-            Some((triangle, found)) => {
-                let within = [self.depths[triangle as usize], reach(triangle)];
-                self.face_only(of, triangle, found, within, faced)
+            Some(only) => {
+                let within = [self.depths[only.0 as usize], reach(only.0)];
+                self.face_only(of, only, within, faced)
             }
         }
     }
@@ -203,8 +207,7 @@ impl Surfaces {
     fn face_only(
         &self,
         (now, point, at): (Placed<'_>, &Point, DVec3),
-        triangle: u32,
-        found: &OnTriangle,
+        (triangle, found, turned): (u32, &OnTriangle, bool),
         [depth, reach]: [f64; 2],
         faced: &mut Faced,
     ) -> bool {
@@ -218,7 +221,7 @@ impl Surfaces {
         }
         let is_turned_away = match point.triangle {
             Some(own) => normal.dot(now.normals[own as usize]) < TURNED_AWAY,
-            None => self.all_turned_away(now, point.nodes[0], normal),
+            None => turned || self.all_turned_away(now, point.nodes[0], normal),
         };
         if is_turned_away {
             faced.first = Some(Facing { triangle, weights: found.weights, at: found.at, normal, gap });
@@ -236,6 +239,22 @@ impl Surfaces {
             Some(_) => self.corners(places, second.triangle).into_iter().any(|corner| height(corner) > ALIKE * edge),
         };
         first.normal.dot(second.normal) < CORNER && rises()
+    }
+
+    /// Whether a triangle stays turned away from all around a node, as long as no two nodes move against each other by
+    /// more than a distance m: of one with sides a and b and the area A the unit normal changes by no more than 2 m (a +
+    /// b + m)/2A.
+    fn stays_turned_away(&self, now: Placed<'_>, point: &Point, triangle: u32, moved: f64) -> bool {
+        let turns = |triangle: u32| {
+            let [a, b, c] = self.corners(now.places, triangle);
+            let (one, other) = (b - a, c - a);
+            2.0 * moved * (one.length() + other.length() + moved) / one.cross(other).length()
+        };
+        let (normal, turn) = (now.normals[triangle as usize], turns(triangle));
+        self.around(point.nodes[0]).iter().all(|&own| {
+            let of_own = turns(own);
+            now.normals[own as usize].dot(normal) < -(of_own + turn + of_own * turn)
+        })
     }
 
     /// Whether a direction is turned away from the normals of all triangles around a node: then it is from the node's

@@ -1,7 +1,7 @@
 //! Which triangles of a point's list matter: most are behind others that are nearer, and stay so while little moves.
 
 /// So many triangles at most; points with more in their way look at all of their lists.
-const MOST: usize = 7;
+const MOST: usize = 13;
 
 /// Numbers of a shortlist that is not known.
 const NONE: u8 = u8::MAX;
@@ -13,6 +13,8 @@ pub struct Shortlist {
     pub(super) wakes: f64,
     /// How many, or [`NONE`].
     count: u8,
+    /// Which of them stay turned away from all around the point, a node: a bit each.
+    turned: u16,
     /// Their places in the list, ascending.
     places: [u8; MOST],
 }
@@ -28,10 +30,15 @@ pub struct Stays {
 
 impl Shortlist {
     /// Of a point that has not been looked at.
-    pub const UNKNOWN: Self = Self { wakes: f64::INFINITY, count: NONE, places: [0; MOST] };
+    pub const UNKNOWN: Self = Self { wakes: f64::INFINITY, count: NONE, turned: 0, places: [0; MOST] };
 
-    /// Without those that stay away, each of which is so far (m).
-    pub(super) fn of(count: usize, away: impl Fn(usize) -> bool, nearest: impl Fn(usize) -> f64) -> Self {
+    /// Without those that stay away, each of which is so far (m), and with which of the others stay turned away.
+    pub(super) fn of(
+        count: usize,
+        away: impl Fn(usize) -> bool,
+        nearest: impl Fn(usize) -> f64,
+        turned: impl Fn(usize) -> bool,
+    ) -> Self {
         let mut short = Self { count: 0, ..Self::UNKNOWN };
         for place in 0..count {
             if away(place) {
@@ -41,6 +48,7 @@ impl Shortlist {
             let Some(free) = short.places.get_mut(usize::from(short.count)) else { return Self::UNKNOWN };
             let Ok(place) = u8::try_from(place) else { return Self::UNKNOWN };
             *free = place;
+            short.turned |= u16::from(turned(usize::from(place))) << short.count;
             short.count += 1;
         }
         short
@@ -49,6 +57,11 @@ impl Shortlist {
     /// The places, if they are known.
     pub(super) fn places(&self) -> Option<&[u8]> {
         self.places.get(..usize::from(self.count))
+    }
+
+    /// Whether the one of that number stays turned away from all around the point, a node.
+    pub(super) fn is_turned_away(&self, number: usize) -> bool {
+        self.turned >> number & 1 == 1
     }
 }
 

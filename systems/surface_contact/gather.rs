@@ -96,7 +96,8 @@ impl Gathered {
         // where it stays if it is one: it is too large to be handed about
         self.set.contacts.push(contact);
         for ((nodes, weights), sign) in [(of_point, 1.0), (of_face, -1.0)] {
-            for (&node, &weight) in nodes.iter().zip(weights) {
+            // a triangle's corners are four of which the last has no weight
+            for (&node, &weight) in nodes.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
                 let slot = self.slot_of(node, of, bodies);
                 if let Some(contact) = self.set.contacts.last_mut() {
                     contact.add(slot, sign * weight);

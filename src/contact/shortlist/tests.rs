@@ -43,7 +43,7 @@ fn faced(surfaces: &Surfaces, (places, within): (&[DVec3], bool), short: &mut Sh
 fn shortlists_have_all_that_may_be_faced() {
     let mut random = fastrand::Rng::with_seed(11);
     let (surfaces, flat) = sheet();
-    let (mut known, mut left, mut faces) = (0, 0, 0);
+    let (mut known, mut left, mut faces, mut turned) = (0, 0, 0, 0);
     for round in 0..400 {
         let mut vector = |size: f64| size * (DVec3::new(random.f64(), random.f64(), random.f64()) - 0.5);
         let (place, stays) = (vector(1.0), Stays { moved: 0.02, reach: 0.0 });
@@ -51,12 +51,13 @@ fn shortlists_have_all_that_may_be_faced() {
         let (corner, within) = (DVec3::new(2.0 + place.x, 2.0 + place.y, flat[12].z + 0.3 * place.z), round % 2 == 1);
         // in some rounds it looks the other way
         let across = if round % 8 < 6 { [DVec3::Y, DVec3::X] } else { [DVec3::X, DVec3::Y] };
-        before.extend([corner, corner + 0.1 * across[0], corner + 0.1 * across[1]]);
+        before.extend([corner, corner + 0.5 * across[0], corner + 0.5 * across[1]]);
         let mut short = Shortlist::UNKNOWN;
         faced(&surfaces, (&before, within), &mut short, stays);
         let Some(places) = short.places() else { continue };
         known += 1;
         left += places.len();
+        turned += (0..places.len()).filter(|&number| short.is_turned_away(number)).count();
         for _ in 0..20 {
             // each within half of what two may move against each other
             let half = stays.moved / 3.0_f64.sqrt();
@@ -70,4 +71,6 @@ fn shortlists_have_all_that_may_be_faced() {
         }
     }
     assert!(known > 200 && left < 5 * known && faces > 1000, "{known}, {left}, {faces}");
+    // of nodes, three of four of which look at the sheet
+    assert!(turned > 100 && turned < left / 2, "{turned} of {left}");
 }
