@@ -4,8 +4,8 @@
 //! slower than a normal run, which has one pass a submission.
 
 use wgpu::{
-    Buffer, BufferDescriptor, BufferUsages, CommandEncoder, ComputePassDescriptor, ComputePassTimestampWrites, QuerySet,
-    QuerySetDescriptor, QueryType,
+    Buffer, BufferDescriptor, BufferUsages, CommandEncoder, ComputePassDescriptor, ComputePassTimestampWrites,
+    QuerySet, QuerySetDescriptor, QueryType,
 };
 
 use super::{Gpu, GpuError, KernelTime};
