@@ -19,7 +19,7 @@ use super::repeat::Repeat;
 use super::system::{Phase, System};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
-use crate::contact::{Lists, Near, Neighbourhoods, Point, Shortlist, Stays, Surfaces, Tree};
+use crate::contact::{Lists, Near, Point, Shortlist, Stays, Surfaces, Tree};
 use crate::error::{Error, missing};
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
@@ -147,11 +147,8 @@ struct Surface {
     first_wake: f64,
     /// Of each point in the lists, what of its list matters; empty before they are begun.
     shortlists: Vec<Shortlist>,
-    /// What shortlists allow for: how far nodes move before it is looked which of them hold, and how far faces are
-    /// looked at (m).
+    /// What shortlists allow for: how far nodes have moved since they were begun, and how far faces are looked at (m).
     stays: Stays,
-    /// How far nodes have moved that shortlists depend on.
-    neighbourhoods: Neighbourhoods,
     /// Nodes that bore a force in the last step.
     pressed: Vec<u32>,
     /// Points that touched or faced something, ascending.
@@ -363,7 +360,7 @@ fn search<'a, T: Scalar>(
     }
     motion::update_places(contacts, &bodies, cpu);
     if !contacts.shortlists_hold(reach) {
-        motion::renew_shortlists(contacts, &bodies, reach);
+        motion::begin_shortlists(contacts, &bodies, reach);
     }
     faced::face(contacts, reach, cpu);
     crossings::find(contacts, reach);

@@ -242,8 +242,7 @@ impl Surfaces {
     }
 
     /// Whether a triangle stays turned away from all around a node, as long as no two nodes move against each other by
-    /// more than a distance m: of one with sides a and b and the area A the unit normal changes by no more than 2 m (a +
-    /// b + m)/2A.
+    /// more than a distance m: the unit normal of one with sides a, b and area A changes by 2 m (a + b + m)/2A at most.
     fn stays_turned_away(&self, now: Placed<'_>, point: &Point, triangle: u32, moved: f64) -> bool {
         let turns = |triangle: u32| {
             let [a, b, c] = self.corners(now.places, triangle);

@@ -54,6 +54,8 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
     kept.resize_with(kept.len().max(tasks), Kept::default);
     let surface = &contacts.surface;
     let now = Placed { places: &surface.places, normals: &surface.normals };
+    // what has moved so far may move back, too
+    let stays = Stays { moved: surface.stays.moved + lately, reach: surface.stays.reach - reach };
     cpu.for_each(found.chunks_mut(POINTS_A_TASK).zip(&mut kept), |(found, kept)| {
         for Found { place, faced, short } in found {
             *short = surface.shortlists[*place as usize];
@@ -63,9 +65,6 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
                 reach + contacts.meeting(point.body, body).map_or(0.0, |meeting| meeting.thickness)
             };
             let place = *place as usize;
-            // what has moved so far may move back, too
-            let [before, most] = surface.neighbourhoods.moved(place);
-            let stays = Stays { moved: most + before + lately, reach: surface.stays.reach - reach };
             let (triangles, distances) = (surface.lists.triangles(place), surface.lists.distances(place));
             let listed = Listed { triangles, distances, nearer, farthest };
             surface.triangles.faced(now, point, listed, (reach_of, contacts.edge), (short, stays), (faced, kept));

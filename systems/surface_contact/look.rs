@@ -39,7 +39,7 @@ pub(super) struct Motion {
     runs: Vec<(u32, Range<u32>)>,
     /// Since the lists were made.
     pub lists: Mark,
-    /// Since it was looked which shortlists hold.
+    /// Since shortlists were begun.
     pub shortlists: Mark,
     /// How far the fastest node went in the last step, at most (m).
     pub largest: f64,
@@ -82,7 +82,7 @@ impl Motion {
         self.lists.set(&self.runs, bodies);
     }
 
-    /// Notes that it is looked which shortlists hold, likewise.
+    /// Notes that shortlists are begun, likewise.
     pub fn mark_shortlists<T: Scalar>(&mut self, bodies: &[BodySlices<'_, T>]) {
         self.shortlists.set(&self.runs, bodies);
     }

@@ -35,7 +35,7 @@ impl Surface {
         let of_nodes = bytes(nodes) + bytes(places);
         let of_points = bytes(points) + bytes(kept) + bytes(apart);
         let of_triangles = self.triangles.bytes() + bytes(facets) + bytes(normals) + bytes(fresh) + bytes(numbers);
-        let near = bytes(&self.near.nodes) + bytes(&self.near.triangles) + self.neighbourhoods.bytes();
+        let near = bytes(&self.near.nodes) + bytes(&self.near.triangles);
         let of_step =
             bytes(&self.found) + self.gathered.bytes() + bytes(&self.solved) + bytes(&self.pairs) + bytes(&self.forces);
         let remembered = bytes(&self.pressed) + bytes(&self.touching);

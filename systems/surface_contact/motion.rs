@@ -4,7 +4,7 @@ use super::body_slices::{BodySlices, vector};
 use super::survey::MARGIN;
 use super::{Surface, SurfaceContacts, crossings};
 use crate::backend::cpu::Cpu;
-use crate::contact::{Finder, Lists, Neighbourhoods, Point, Shortlist};
+use crate::contact::{Finder, Lists, Point, Shortlist, Stays};
 use crate::math::Scalar;
 use glam::DVec3;
 use web_time::Instant;
@@ -12,13 +12,10 @@ use web_time::Instant;
 /// Triangles whose normals a task finds.
 const TRIANGLES_A_TASK: usize = 1024;
 
-/// How far nodes of a neighbourhood may move against each other before shortlists are begun anew, in edges: at least
-/// and at most; and for how many steps of the fastest node, between these.
+/// How far nodes may move before shortlists are begun anew, in edges: at least and at most; and for how many steps of
+/// the fastest node, between these.
 const STAYS: [f64; 2] = [2e-3, 2e-2];
 const STEPS_OF_SHORTLISTS: f64 = 20.0;
-
-/// How much of that bodies may move, as a whole too, before it is looked how far neighbourhoods have.
-const UNSEEN: f64 = 0.5;
 
 /// How far faces must be looked at when the fastest node goes so far in a step (m).
 pub(super) fn reach(contacts: &SurfaceContacts, largest: f64) -> f64 {
@@ -31,7 +28,7 @@ impl SurfaceContacts {
         self.farthest(reach) + self.surface.motion.lists.moved <= self.surface.lists.radius
     }
 
-    /// Whether shortlists hold where faces are looked at so far (m), as far as is known without looking.
+    /// Whether shortlists hold where faces are looked at so far (m).
     pub(super) fn shortlists_hold(&self, reach: f64) -> bool {
         let Surface { shortlists, stays, motion, .. } = &self.surface;
         !shortlists.is_empty() && reach <= stays.reach && motion.shortlists.moved <= stays.moved
@@ -79,30 +76,20 @@ pub(super) fn list<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlic
     surface.motion.mark_lists(bodies);
     // they are begun when somebody looks
     surface.shortlists.clear();
-    surface.neighbourhoods = Neighbourhoods::default();
     surface.figures.builds += 1;
     surface.figures.building += started.elapsed();
 }
 
-/// Looks which shortlists hold until nodes have moved as far again as is left to pass unseen, and begins the others
-/// anew: for nodes of their neighbourhoods that move no farther than some steps of the fastest will take them, and faces
-/// that are looked at no farther than `reach` (m), twice. Where that was less, all are begun anew.
-pub(super) fn renew_shortlists<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], reach: f64) {
+/// Begins shortlists anew: for nodes that move no farther than some steps of the fastest will take them, and faces that
+/// are looked at no farther than `reach` (m), twice.
+pub(super) fn begin_shortlists<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], reach: f64) {
     let edge = contacts.edge;
-    let Surface { motion, shortlists, stays, lists, neighbourhoods, triangles, points, places, .. } =
-        &mut contacts.surface;
+    let Surface { motion, shortlists, stays, lists, .. } = &mut contacts.surface;
     motion.mark_shortlists(bodies);
-    let most = (STEPS_OF_SHORTLISTS * motion.largest).clamp(STAYS[0] * edge, STAYS[1] * edge);
-    // what is no number is no bound
-    let reaches = reach <= stays.reach;
-    if shortlists.is_empty() || !reaches {
-        shortlists.clear();
-        shortlists.resize(lists.points.len(), Shortlist::UNKNOWN);
-        *neighbourhoods = Neighbourhoods::of(triangles, points, lists);
-        stays.reach = 2.0 * reach;
-    }
-    stays.moved = UNSEEN * most;
-    neighbourhoods.look(places, [stays.moved, most], |anew| shortlists[anew].fill(Shortlist::UNKNOWN));
+    shortlists.clear();
+    shortlists.resize(lists.points.len(), Shortlist::UNKNOWN);
+    let moved = (STEPS_OF_SHORTLISTS * motion.largest).clamp(STAYS[0] * edge, STAYS[1] * edge);
+    *stays = Stays { moved, reach: 2.0 * reach };
 }
 
 /// Sees where the nodes are that are near something, and which way triangles look.
