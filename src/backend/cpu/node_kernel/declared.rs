@@ -20,11 +20,11 @@ pub(crate) enum Asked {
     Increment,
 }
 
-/// What component something is in a world.
-type IdIn = fn(&World) -> Option<ComponentId>;
+/// The component of a column in a world.
+type ComponentOf = fn(&World) -> Option<ComponentId>;
 
 /// The same in that order: the name of the type, and its component.
-const COLUMNS: [(&str, IdIn); 8] = [
+const COLUMNS: [(&str, ComponentOf); 8] = [
     ("Mass", |world| world.component_id::<Mass>()),
     ("InertialMass", |world| world.component_id::<InertialMass>()),
     ("InternalForce", |world| world.component_id::<InternalForce>()),
@@ -56,7 +56,7 @@ impl Declared {
     /// What the access of a system says.
     pub(crate) fn of(access: &SystemAccess, world: &World) -> Self {
         let touched = Touched(access);
-        let of_column = |(place, (_, id)): (usize, &(&str, IdIn))| {
+        let of_column = |(place, (_, id)): (usize, &(&str, ComponentOf))| {
             let Some(id) = id(world) else { return 0 };
             u32::from(touched.reads(id)) << (2 * place) | u32::from(touched.writes(id)) << (2 * place + 1)
         };
