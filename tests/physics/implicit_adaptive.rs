@@ -18,8 +18,8 @@ fn amplitude() -> f64 {
     1e-3 / SQUARE.sqrt()
 }
 
-/// What the displacement of one degree of freedom is off at most at the ends of frames of 10 ms, over its amplitude; and
-/// what steps took.
+/// What the displacement of one degree of freedom is off at most at the ends of frames of 10 ms, over its amplitude;
+/// and what steps took.
 fn off(mut simulation: Simulation) -> (f64, ImplicitSteps) {
     let (mut worst, omega) = (0.0_f64, SQUARE.sqrt());
     for frame in 1..=FRAMES {

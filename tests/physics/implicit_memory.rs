@@ -1,5 +1,5 @@
-//! What implicit steps hold, by counted bytes: with the columns of the scene less than twice what explicit steps of tetrahedra
-//! have, the dense matrices of the coarse level apart.
+//! What implicit steps hold, by counted bytes: with the columns of the scene less than twice what explicit steps of
+//! tetrahedra have, the dense matrices of the coarse level apart.
 
 use crate::configurations::scene_of;
 use crate::implicit::options;
