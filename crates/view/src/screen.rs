@@ -15,6 +15,12 @@ pub fn configuration() -> WgpuConfiguration {
     WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() }
 }
 
+/// The canvas of a page likewise.
+#[cfg(target_arch = "wasm32")]
+pub fn web_options() -> eframe::WebOptions {
+    eframe::WebOptions { wgpu_options: configuration(), ..eframe::WebOptions::default() }
+}
+
 /// The screen's device: what is simulated on it is drawn from where it is. None where it draws only, as WebGL does.
 pub fn host(context: &CreationContext<'_>) -> Option<Host> {
     let screen = context.wgpu_render_state.as_ref()?;

@@ -5,7 +5,7 @@ mod run;
 mod scenes;
 mod waiting;
 
-use eframe::{WebOptions, WebRunner};
+use eframe::WebRunner;
 use serde_json::json;
 use sinew::driver::State;
 use sinew::{BackendChoice, Options};
@@ -61,8 +61,7 @@ impl Page {
             start.options.host = screen::host(context);
             Ok(Box::new(App::on_screen(context, start)))
         });
-        let options = WebOptions { wgpu_options: screen::configuration(), ..WebOptions::default() };
-        self.runner.start(canvas, options, app).await?;
+        self.runner.start(canvas, screen::web_options(), app).await?;
         STEPS.set(self.runner.app_mut::<App>().and_then(|app| app.steps()));
         Ok(())
     }

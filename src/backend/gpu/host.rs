@@ -41,7 +41,8 @@ impl Gpu {
     /// Takes over a program's device, which stays the program's own: see [`Host`].
     ///
     /// # Errors
-    /// [`NoGpu::MayNotWait`] in a page that did not say how it waits; [`NoGpu::TooSmall`]: it was opened with fewer buffers a kernel than kernels have, though its adapter has more;
+    /// [`NoGpu::MayNotWait`] in a page that did not say how it waits; [`NoGpu::TooSmall`]: it was opened with fewer
+    /// buffers a kernel than kernels have, though its adapter has more;
     /// [`NoGpu::NoMatch`]: it is not what the choice takes.
     pub fn adopt(host: Host, choice: &Choice) -> Result<Self, NoGpu> {
         if !can_wait() {

@@ -3,10 +3,10 @@
 use crate::components::*;
 use bevy_ecs::prelude::*;
 
-/// Whether the search for a step writes over a column.
+/// Whether the search for a step writes over a column; what rounding leaves out is written when one is taken.
 fn is_tried(column: &ColumnAccess) -> bool {
     let subjects = [Subject::Motion, Subject::Force, Subject::Memory, Subject::Grip];
-    column.role == Role::State && subjects.contains(&column.subject)
+    column.role == Role::State && subjects.contains(&column.subject) && column.increments != Increments::SecondHalf
 }
 
 /// These columns as they were at the beginning of the step.

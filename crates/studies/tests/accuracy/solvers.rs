@@ -133,7 +133,8 @@ fn slow_loads_are_for_implicit_steps_and_ringing_is_not() {
     let (written, euler) = (row(&free, "as written"), row(&free, "implicit Euler 2 ms"));
     assert!(error(written) < 0.1 && error(euler) > 0.1, "{} {}", error(written), error(euler));
     let said = &free.findings.advice;
-    assert!(said.iter().any(|one| one.starts_with("Implicit steps do not pay: the nearest")), "{said:?}");
+    // those that are chosen by their errors are good enough, and none is cheaper
+    assert!(said.iter().any(|one| one.starts_with("Implicit steps do not pay: ")), "{said:?}");
 }
 
 #[test]
