@@ -1,3 +1,5 @@
+#![allow(clippy::unwrap_used)]
+
 use super::{Bell, Waiting, suspended_on, wait_by};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex};
