@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// More than there are, by less than a tenth: who adds some sees what there is already.
-const MOST: usize = 540;
+const MOST: usize = 580;
 
 /// Pages of types, traits and functions, by their paths in the docs of a crate.
 fn pages(all: &str) -> Vec<&str> {
