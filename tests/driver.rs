@@ -240,6 +240,21 @@ fn mistakes_of_a_scene_say_where_they_are() {
 }
 
 #[test]
+fn why_there_is_no_scene_stands_until_one_is_loaded() {
+    let mut session = Session::new(options());
+    session.command(Command::Run);
+    assert!(session.state().refusal.unwrap().reason.contains("there is no scene yet"));
+    let wrong = scene("").text().replace("\"z0\"", "\"z7\"");
+    session.command(Command::Load(Box::new(SceneFile::from_text("test.ron", &wrong, Path::new(""), &[]).unwrap())));
+    session.command(Command::Run);
+    session.command(Command::Step(1));
+    let refusal = session.state().refusal.unwrap();
+    assert!(refusal.command == "load" && refusal.reason.contains("z7"), "{refusal:?}");
+    session.command(Command::Load(scene("")));
+    assert!(session.state().refusal.is_none());
+}
+
+#[test]
 fn a_wrong_scene_leaves_the_old_one_running() {
     let mut session = session(FALL);
     session.command(Command::Run);

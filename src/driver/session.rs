@@ -64,8 +64,14 @@ impl Session {
             Ok(()) => drop(self.refusal.take_if(|refusal| refusal.command == name)),
             // a breakdown is a state of its own
             Err(Error::Unstable(_)) => {}
+            // that there is no scene tells less than why
+            Err(_) if self.run.is_none() && name != "load" && self.was_refused("load") => {}
             Err(error) => self.refusal = Some(refusal(name, &error)),
         }
+    }
+
+    fn was_refused(&self, command: &str) -> bool {
+        self.refusal.as_ref().is_some_and(|told| told.command == command)
     }
 
     /// Takes the steps that are due after some time on the wall, for as long as a budget of it lasts; at least one, if
