@@ -216,6 +216,7 @@ mod tests {
     fn a_frame_that_is_put_aside_keeps_its_state_and_what_is_sent_waits_for_the_next() {
         let steps = Steps::new(&Options::default(), &egui::Context::default());
         let mut window = steps.clone();
+        window.send(Command::Speed(1.0));
         window.frame();
         window.send(Command::Speed(2.0));
         let aside = steps.0.driver.borrow_mut();
