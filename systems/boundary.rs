@@ -60,7 +60,7 @@ impl NodeSystem for Prescribed {
 
     fn act<T: SimdScalar>(&self, motion: &[[f64; 4]; 3], _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
         nodes.reads(Asked::Displacement);
-        nodes.writes(Asked::Increment);
+        nodes.writes(Asked::DisplacementIncrement);
         let compensation = nodes.compensation.as_ref().map(|[of_u, _]| &**of_u);
         let own = places_within(&self.rows, nodes.first, nodes.rows());
         for (&row, arm) in self.rows[own.clone()].iter().zip(&self.arms[own]) {

@@ -34,7 +34,7 @@ impl NodeSystem for Corners {
     }
 
     fn act<T: SimdScalar>(&self, (): &(), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
-        nodes.writes(Asked::Internal);
+        nodes.writes(Asked::InternalForce);
         sum_at(self, nodes.element_force, nodes.first, nodes.internal);
         if nodes.external.is_some()
             && let Some(external) = nodes.external_force_mut()

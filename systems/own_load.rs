@@ -102,8 +102,8 @@ impl NodeSystem for OwnLoad {
     fn act<T: SimdScalar>(&self, step: &InStep, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
         let (first, count) = (nodes.first, nodes.rows());
         nodes.reads(Asked::Displacement);
-        nodes.reads(Asked::Increment);
-        nodes.writes(Asked::External);
+        nodes.reads(Asked::DisplacementIncrement);
+        nodes.writes(Asked::ExternalForce);
         let mass = nodes.mass();
         let Some(external) = nodes.external.as_deref_mut() else { return };
         cpu.dispatch(Push {

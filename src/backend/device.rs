@@ -43,17 +43,16 @@ pub struct Traffic {
 pub struct Device {
     gpu: Gpu,
     columns: BTreeMap<Key, DeviceColumn>,
-    accesses: Vec<ColumnAccess>,
     written: BTreeMap<KernelId, Vec<Key>>,
     labelled: BTreeMap<String, Vec<BufferId>>,
     traffic: Traffic,
 }
 
 impl Device {
-    /// Takes a GPU for a run; `accesses` are the kinds of columns there are.
-    pub fn new(gpu: Gpu, accesses: Vec<ColumnAccess>) -> Self {
+    /// Takes a GPU for a run.
+    pub fn new(gpu: Gpu) -> Self {
         let (columns, written, labelled) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
-        Self { gpu, columns, accesses, written, labelled, traffic: Traffic::default() }
+        Self { gpu, columns, written, labelled, traffic: Traffic::default() }
     }
 
     /// What the GPU allows.
@@ -104,7 +103,7 @@ impl Device {
         let mut sizes = BTreeMap::new();
         let entities: Vec<Entity> = world.query::<EntityRef>().iter(world).map(|entity| entity.id()).collect();
         for &entity in &entities {
-            for access in &self.accesses {
+            for access in all_columns() {
                 if let Some(bytes) = (access.bytes)(world, entity) {
                     sizes.insert((entity, access.name), (bytes.len(), *access));
                 }

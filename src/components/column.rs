@@ -7,6 +7,7 @@ use bevy_ecs::component::{ComponentId, Mutable};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::sync::LazyLock;
 
 /// The number type of a run.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
@@ -253,7 +254,7 @@ impl ColumnAccess {
 
 /// The columns of one buffer in the order in which they lie there.
 pub fn columns_in(buffer: &str) -> impl Iterator<Item = ColumnAccess> {
-    all_columns().into_iter().filter(move |column| column.buffer == buffer)
+    all_columns().iter().copied().filter(move |column| column.buffer == buffer)
 }
 
 /// Where an entity's column begins in its buffer on a device, in words of four bytes.
@@ -262,16 +263,19 @@ pub fn place_in_buffer<C: Column>(entity: Entity, world: &World) -> usize {
     before.filter_map(|column| (column.bytes)(world, entity)).map(<[u8]>::len).sum::<usize>() / 4
 }
 
-/// Names of those columns of which something holds.
-pub fn names_of(which: impl Fn(&ColumnAccess) -> bool) -> Vec<&'static str> {
-    all_columns().into_iter().filter(which).map(|column| column.name).collect()
+/// Whether something holds of the column of a name.
+pub fn column_is(name: &str, which: impl Fn(&ColumnAccess) -> bool) -> bool {
+    all_columns().iter().any(|column| column.name == name && which(column))
 }
 
 /// Every kind of column there is, as the modules declare them.
-pub fn all_columns() -> Vec<ColumnAccess> {
-    let of_tools = [super::tool::accesses(), super::tool_removal::accesses(), super::suction::accesses()].concat();
-    let attached = [super::grasp::accesses(), super::suture::accesses(), super::glue::accesses()].concat();
-    [super::nodes::accesses(), super::block::accesses(), super::contact::accesses(), of_tools, attached].concat()
+pub fn all_columns() -> &'static [ColumnAccess] {
+    static ALL: LazyLock<Vec<ColumnAccess>> = LazyLock::new(|| {
+        let of_tools = [super::tool::accesses(), super::tool_removal::accesses(), super::suction::accesses()].concat();
+        let attached = [super::grasp::accesses(), super::suture::accesses(), super::glue::accesses()].concat();
+        [super::nodes::accesses(), super::block::accesses(), super::contact::accesses(), of_tools, attached].concat()
+    });
+    &ALL
 }
 
 /// Declares components that are columns, each with its name, its [`Role`] and [`Subject`], what its [`Rows`] belong to

@@ -58,7 +58,7 @@ pub use block::{
 #[doc(hidden)]
 pub use clock::{Relaxation, TrialForces};
 #[doc(hidden)]
-pub use column::{ColumnAccess, Role, all_columns, columns_in, names_of, place_in_buffer};
+pub use column::{ColumnAccess, Role, all_columns, column_is, columns_in, place_in_buffer};
 #[doc(hidden)]
 pub use column_layout::{Increments, Rows, Subject};
 #[doc(hidden)]

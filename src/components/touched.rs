@@ -39,5 +39,5 @@ impl Touched<'_> {
 }
 
 fn columns(world: &World, touched: impl Fn(ComponentId) -> bool) -> Vec<ColumnAccess> {
-    all_columns().into_iter().filter(|column| (column.id)(world).is_some_and(&touched)).collect()
+    all_columns().iter().copied().filter(|column| (column.id)(world).is_some_and(&touched)).collect()
 }

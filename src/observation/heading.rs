@@ -17,7 +17,7 @@ impl Heading {
         columns.iter().map(|&(name, unit)| Self { name, unit }).collect()
     }
 
-    /// Of no columns but these, as texts.
+    /// Some headings as texts.
     pub(super) fn texts(all: &[Self]) -> Vec<String> {
         all.iter().map(Self::to_string).collect()
     }

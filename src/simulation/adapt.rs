@@ -85,8 +85,7 @@ impl Simulation {
 
     /// Finds the highest frequency from what was known of it; whether there is one.
     pub(super) fn estimate(&mut self, follower: &mut Follower, seen: &mut StabilitySample) -> Result<bool, Error> {
-        let columns = Tangent::columns();
-        bring_to_host(&mut self.world, |_, name| columns.contains(&name))?;
+        bring_to_host(&mut self.world, |_, name| column_is(name, Tangent::reads))?;
         let world = &mut self.world;
         let bodies = bodies(world);
         let weights = nodal::weights_now(world, &mut follower.trackers, &bodies);

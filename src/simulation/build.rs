@@ -229,7 +229,7 @@ fn kernels_on(
     plan: &mut Plan,
     world: &mut World,
 ) -> Result<Vec<Vec<KernelId>>, Error> {
-    world.insert_resource(Device::new(gpu, all_columns()));
+    world.insert_resource(Device::new(gpu));
     if world.resource::<Clock>().relaxation.is_none() {
         crate::systems::add_guard_columns(world);
         let kernels_of_guards = Device::prepare(world, crate::systems::guard_kernels)?;

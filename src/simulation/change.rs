@@ -19,13 +19,13 @@ use crate::scene::{SceneFile, other_than_parameters, validate};
 use bevy_ecs::prelude::*;
 
 /// What is changed on the host.
-fn written() -> Vec<&'static str> {
-    names_of(|column| matches!(column.subject, Subject::Shape | Subject::Memory))
+fn is_written(column: &ColumnAccess) -> bool {
+    matches!(column.subject, Subject::Shape | Subject::Memory)
 }
 
 /// What is read there: the same, and what it follows from.
-fn read() -> Vec<&'static str> {
-    names_of(|column| matches!(column.subject, Subject::Shape | Subject::Memory | Subject::Motion))
+fn is_read(column: &ColumnAccess) -> bool {
+    is_written(column) || column.subject == Subject::Motion
 }
 
 impl Simulation {
@@ -103,19 +103,16 @@ impl Simulation {
             Some(text) => self.read_changed(text, &[])?.scene,
             None => self.file.scene.clone(),
         };
-        let read = read();
-        bring_to_host(&mut self.world, |_, name| read.contains(&name))?;
+        bring_to_host(&mut self.world, |_, name| column_is(name, is_read))?;
         self.renew(&scene)?;
         self.world.resource_mut::<Signals>().renew_loads(&scene.loads);
         (self.scene, self.changed) = (scene, text);
-        let written = written();
-        send_to_device(&mut self.world, |_, name| written.contains(&name))
+        send_to_device(&mut self.world, |_, name| column_is(name, is_written))
     }
 
     fn change_materials(&mut self, scene: &Scene) -> Result<(), Error> {
         let before = held_for_long(&mut self.world)?;
-        let read = read();
-        bring_to_host(&mut self.world, |_, name| read.contains(&name))?;
+        bring_to_host(&mut self.world, |_, name| column_is(name, is_read))?;
         let changed = self.renew(scene)?;
         if let Err(refused) = self.find_stable_step() {
             let scene = self.scene.clone();
@@ -125,8 +122,7 @@ impl Simulation {
         for (entity, law) in changed {
             remember_as_before(&mut self.world, entity, &law);
         }
-        let written = written();
-        send_to_device(&mut self.world, |_, name| written.contains(&name))?;
+        send_to_device(&mut self.world, |_, name| column_is(name, is_written))?;
         let more = held_for_long(&mut self.world)? - before;
         self.world.resource_mut::<GuardMemory>().at_start += more;
         if let Some(follower) = self.solver.follower_mut() {

@@ -55,7 +55,7 @@ fn products_enough(free: usize, accuracy: f64) -> usize {
 }
 
 /// The largest eigenvalue of M⁻¹K at the present state with held axes, known to the share `accuracy`. The columns on
-/// the host must be up to date: see [`Tangent::columns`]. `None` where nothing can move, or forces are no numbers.
+/// the host must be up to date: see [`Tangent::reads`]. `None` where nothing can move, or forces are no numbers.
 pub(super) fn largest_eigenvalue(world: &mut World, accuracy: f64) -> Option<Largest> {
     largest_worth(world, accuracy, None)
 }
@@ -104,7 +104,7 @@ const NOISE: f64 = 0.3;
 
 /// The largest eigenvalue of M⁻¹K at the present state, at least (1/s²), by few `products` from a start near its
 /// eigenvector: the `shape` that was found last, and noise where `weights` (of each axis) say that it may be now. With
-/// the new shape, √M u of all axes in f32. The columns on the host must be up to date: see [`Tangent::columns`]. `None`
+/// the new shape, √M u of all axes in f32. The columns on the host must be up to date: see [`Tangent::reads`]. `None`
 /// where nothing can move, or forces are no numbers.
 pub(super) fn largest_near(
     world: &mut World,

@@ -53,8 +53,7 @@ impl Simulation {
     /// What the GPU says; states whose forces are no numbers.
     pub fn modes(&mut self, count: usize) -> Result<Vec<Mode>, Error> {
         self.settle()?;
-        let columns = Tangent::columns();
-        bring_to_host(&mut self.world, |_, name| columns.contains(&name))?;
+        bring_to_host(&mut self.world, |_, name| column_is(name, Tangent::reads))?;
         let bodies = bodies(&mut self.world);
         let roots = roots_of_mass(&self.world, &bodies);
         let free = roots.iter().filter(|&&root| root > 0.0).count();

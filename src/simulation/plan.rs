@@ -8,7 +8,7 @@ use super::schedule::Scheduled;
 use super::scheme::Summed;
 use crate::backend::dispatch::Dispatched;
 use crate::backend::kernel::Kernel;
-use crate::components::{ColumnAccess, Role, Touched, names_of};
+use crate::components::{ColumnAccess, Role, Touched, column_is};
 use crate::systems::{Phase, Repeat, RowSet};
 use bevy_ecs::prelude::World;
 use bevy_ecs::system::SystemAccess;
@@ -89,10 +89,10 @@ pub(super) enum Over {
 
 /// Marks what is before forces and makes, for the step that it is in, what one that finds forces reads.
 fn mark_what_forces_need(systems: &mut [Planned]) {
-    let scratch = names_of(|column| column.role == Role::Scratch);
+    let is_scratch = |column: &ColumnAccess| column.role == Role::Scratch;
     let finders = systems.iter().filter(|system| system.finds_forces);
     let needed: Vec<&str> =
-        finders.flat_map(|system| &system.reads).copied().filter(|column| scratch.contains(column)).collect();
+        finders.flat_map(|system| &system.reads).copied().filter(|name| column_is(name, is_scratch)).collect();
     for system in systems.iter_mut().filter(|system| system.phase <= Phase::Boundary) {
         system.finds_forces |= system.writes.iter().any(|column| needed.contains(column));
     }

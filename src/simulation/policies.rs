@@ -57,8 +57,7 @@ impl Simulation {
 
     /// Finds the highest frequency; whether there is one.
     pub(super) fn find(&mut self, follower: &mut Follower, seen: &mut StabilitySample) -> Result<bool, Error> {
-        let columns = Tangent::columns();
-        bring_to_host(&mut self.world, |_, name| columns.contains(&name))?;
+        bring_to_host(&mut self.world, |_, name| column_is(name, Tangent::reads))?;
         let Some(limit) = limit_now(&mut self.world, ACCURACY) else { return Ok(false) };
         for block in &mut follower.trackers {
             block.remember(&self.world);

@@ -120,8 +120,8 @@ impl Simulation {
 
     /// Bodies stand where they do in another world, at rest and relaxed; guards and the stable step begin with that.
     fn stand_as(&mut self, other: &mut World) -> Result<(), Error> {
-        let taken = names_of(|column| is_taken(column) || is_touch(column));
-        bring_to_host(other, |_, name| taken.contains(&name))?;
+        let taken = |name| column_is(name, |column| is_taken(column) || is_touch(column));
+        bring_to_host(other, |_, name| taken(name))?;
         let bodies: Vec<(Entity, Label)> = bodies(&mut self.world);
         let others = self::bodies(other);
         for (body, label) in bodies {
@@ -134,8 +134,8 @@ impl Simulation {
             }
         }
         relax_fully(&mut self.world);
-        let remembered = names_of(|column| column.subject == Subject::Memory);
-        send_to_device(&mut self.world, |_, name| taken.contains(&name) || remembered.contains(&name))?;
+        let remembered = |name| column_is(name, |column| column.subject == Subject::Memory);
+        send_to_device(&mut self.world, |_, name| taken(name) || remembered(name))?;
         crate::observation::begin_to_guard(&mut self.world)?;
         if let Some(follower) = self.solver.follower_mut() {
             // the step was found for bodies that are not deformed
@@ -156,7 +156,7 @@ fn take_touch(world: &mut World, body: Entity, other: &World, from: Entity) {
     if other.resource::<Clock>().springs.is_none() || rows(world, body) != rows(other, from) {
         return;
     }
-    for column in all_columns().into_iter().filter(is_touch) {
+    for column in all_columns().iter().filter(|column| is_touch(column)) {
         if let Some(bytes) = (column.bytes)(other, from) {
             (column.write)(world, body, bytes);
         }
@@ -169,7 +169,7 @@ fn take(world: &mut World, body: Entity, other: &World, from: Entity) {
     let (Some(to_rows), Some(from_rows)) = (rows(world, body), rows(other, from)) else { return };
     let vectors = world.get::<Displacement>(body).map_or(0, |u| u.len() / 3);
     let vector = world.get::<Displacement>(body).map_or(0, |u| u.bytes().len()) / vectors.max(1);
-    for column in all_columns().into_iter().filter(is_taken) {
+    for column in all_columns().iter().filter(|column| is_taken(column)) {
         let (Some(source), Some(target)) = ((column.bytes)(other, from), (column.bytes)(world, body)) else { continue };
         let mut taken = target.to_vec();
         let of_part = vector * to_rows.len();

@@ -211,8 +211,7 @@ impl Relaxing {
             }
             return self.try_newton(world, passes);
         }
-        let columns = State::columns();
-        bring_to_host(world, |_, name| columns.contains(&name))?;
+        bring_to_host(world, |_, name| column_is(name, State::has))?;
         let now = State::of(world);
         let residual = Residual::of(&now, world);
         let trouble = world.resource_scope(|world, observer: Mut<Observer>| observer.trouble(world))?;
@@ -356,8 +355,7 @@ impl Relaxing {
         relaxation.force_scale = self.force_scale * self.squeezed;
         self.before.restore(world);
         self.before.step = step;
-        let columns = State::columns();
-        send_to_device(world, |_, name| columns.contains(&name))?;
+        send_to_device(world, |_, name| column_is(name, State::has))?;
         world.resource_mut::<Clock>().relaxation = Some(relaxation);
         self.equilibrium.setbacks += 1;
         self.next_check = (step + CHECK_STEPS).min(self.most_steps);

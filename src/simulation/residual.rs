@@ -39,10 +39,10 @@ pub(super) struct Residual {
 }
 
 impl State {
-    /// Names of the columns that must be on the host to see a state and to go back to one.
-    pub fn columns() -> Vec<&'static str> {
+    /// Whether a column must be on the host to see a state and to go back to one.
+    pub fn has(column: &ColumnAccess) -> bool {
         let subjects = [Subject::Motion, Subject::Force, Subject::Inversion, Subject::Guard];
-        names_of(|column| column.role == Role::State && subjects.contains(&column.subject))
+        column.role == Role::State && subjects.contains(&column.subject)
     }
 
     /// The present state.

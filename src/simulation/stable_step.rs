@@ -12,6 +12,7 @@ use super::tangent::Tangent;
 use super::{Simulation, added_mass};
 use crate::assembly::{StableStep, stable_step};
 use crate::backend::device::bring_to_host;
+use crate::components::column_is;
 use crate::error::Error;
 use crate::scene::schema::{Constraint, Curve, InitialState, Inversion, Scene, StepBound, WhenUnstable};
 use crate::scene::{Diagnostics, SceneFile};
@@ -116,8 +117,7 @@ impl Simulation {
     /// # Errors
     /// What the GPU says.
     pub fn stable_limit(&mut self) -> Result<Option<f64>, Error> {
-        let columns = Tangent::columns();
-        bring_to_host(&mut self.world, |_, name| columns.contains(&name))?;
+        bring_to_host(&mut self.world, |_, name| column_is(name, Tangent::reads))?;
         let loads = self.solver.follower().map_or(self.facts.stability.loads, Follower::loads);
         Ok(limit_now(&mut self.world, ACCURACY).map(|limit| loads.with(limit)))
     }

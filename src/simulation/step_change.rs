@@ -55,9 +55,8 @@ impl Simulation {
     pub(super) fn change_step(&mut self, time_step: f64, last_step: u64) -> Result<(), Error> {
         let world = &mut self.world;
         let counted: Vec<ColumnAccess> =
-            all_columns().into_iter().filter(|column| column.increments != Increments::None).collect();
-        let (read, written) = (names_of(is_read), names_of(is_written));
-        bring_to_host(world, |_, name| read.contains(&name))?;
+            all_columns().iter().copied().filter(|column| column.increments != Increments::None).collect();
+        bring_to_host(world, |_, name| column_is(name, is_read))?;
         let before = *world.resource::<Clock>();
         world.resource_scope(|world, mut observer: Mut<Observer>| observer.change_step(world, time_step, last_step))?;
         world.resource_mut::<Clock>().change_step(time_step);
@@ -71,7 +70,7 @@ impl Simulation {
             }
         }
         self.facts.steps = last_step;
-        send_to_device(world, |_, name| written.contains(&name))
+        send_to_device(world, |_, name| column_is(name, is_written))
     }
 }
 

@@ -59,10 +59,10 @@ impl<'w> Tangent<'w> {
         (tangent.change.is_finite() && tangent.change > 0.0).then_some(tangent)
     }
 
-    /// Names of what [`Tangent::at_present`] reads that a run changes.
-    pub fn columns() -> Vec<&'static str> {
+    /// Whether [`Tangent::at_present`] reads a column that a run changes.
+    pub fn reads(column: &ColumnAccess) -> bool {
         let subjects = [Subject::Motion, Subject::Shape, Subject::Memory, Subject::Mass];
-        names_of(|column| subjects.contains(&column.subject) && column.increments == Increments::None)
+        subjects.contains(&column.subject) && column.increments == Increments::None
     }
 
     /// K x (N) for displacements x, of any length: (F(u + hx) − F(u))/h.

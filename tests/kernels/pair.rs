@@ -80,7 +80,7 @@ pub fn run_kernels(
     describe: impl FnOnce(&mut World, &mut dyn sinew::backend::Buffers) -> Vec<sinew::backend::kernel::Kernel>,
     times: u32,
 ) {
-    world.insert_resource(Device::new(gpu, all_columns()));
+    world.insert_resource(Device::new(gpu));
     let kernels = Device::prepare(world, describe).unwrap_or_else(|error| panic!("{error}"));
     assert!(!kernels.is_empty());
     let record = sinew::backend::step::record(world.resource::<Clock>(), world.resource::<Signals>(), true);

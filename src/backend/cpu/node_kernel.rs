@@ -24,11 +24,17 @@ pub fn move_nodes<T: SimdScalar>(
     columns: &mut NodeColumns<'_, T>,
     coefficients: &IntegrationCoefficients<T>,
 ) -> Option<u32> {
-    for column in [Asked::Inertia, Asked::Internal, Asked::External, Asked::Axes, Asked::Damping] {
+    for column in [
+        Asked::InertialMass,
+        Asked::InternalForce,
+        Asked::ExternalForce,
+        Asked::ConstrainedAxes,
+        Asked::DampingCoefficient,
+    ] {
         columns.reads(column);
     }
     columns.writes(Asked::Displacement);
-    columns.writes(Asked::Increment);
+    columns.writes(Asked::DisplacementIncrement);
     cpu.dispatch_widest(Task { columns, coefficients }).map(|row| row as u32)
 }
 

@@ -108,7 +108,7 @@ impl Buffers for Counter<'_> {
         if let Some(&id) = self.columns.get(&(entity, name)) {
             return id;
         }
-        let buffer = all_columns().into_iter().find(|column| column.name == name).map_or(name, |column| column.buffer);
+        let buffer = all_columns().iter().find(|column| column.name == name).map_or(name, |column| column.buffer);
         let there: Vec<&'static str> = columns_in(buffer).map(|column| column.name).collect();
         let bytes = there.iter().filter_map(|&name| self.sizes.bytes.get(&(entity, name))).sum();
         let id = self.add(self.sizes.name_of(entity), buffer.into(), "column", bytes);

@@ -56,7 +56,7 @@ impl Kept {
 fn find(world: &mut World, is_written: impl Fn(&ColumnAccess) -> bool) -> Vec<(ColumnAccess, Entity, Vec<u8>)> {
     let mut all = world.query_filtered::<Entity, Or<(With<Body>, With<Block>)>>();
     let entities: Vec<Entity> = all.iter(world).collect();
-    let columns: Vec<ColumnAccess> = all_columns().into_iter().filter(is_written).collect();
+    let columns: Vec<ColumnAccess> = all_columns().iter().copied().filter(is_written).collect();
     let mut found = Vec::new();
     for &entity in &entities {
         let own = columns.iter().filter(|column| (column.bytes)(world, entity).is_some());

@@ -7,33 +7,31 @@ use bevy_ecs::prelude::World;
 use bevy_ecs::system::SystemAccess;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// Columns that node systems ask for, by the places of their bits: two of each, to read and to write.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Asked {
-    Mass,
-    Inertia,
-    Internal,
-    External,
-    Axes,
-    Damping,
-    Displacement,
-    Increment,
-}
-
-/// The component of a column in a world.
+/// What component something is in a world.
 type ComponentOf = fn(&World) -> Option<ComponentId>;
 
-/// The same in that order: the name of the type, and its component.
-const COLUMNS: [(&str, ComponentOf); 8] = [
-    ("Mass", |world| world.component_id::<Mass>()),
-    ("InertialMass", |world| world.component_id::<InertialMass>()),
-    ("InternalForce", |world| world.component_id::<InternalForce>()),
-    ("ExternalForce", |world| world.component_id::<ExternalForce>()),
-    ("ConstrainedAxes", |world| world.component_id::<ConstrainedAxes>()),
-    ("DampingCoefficient", |world| world.component_id::<DampingCoefficient>()),
-    ("Displacement", |world| world.component_id::<Displacement>()),
-    ("DisplacementIncrement", |world| world.component_id::<DisplacementIncrement>()),
-];
+macro_rules! asked {
+    ($($column:ident),*) => {
+        /// Columns that node systems ask for, by the places of their bits: two of each, to read and to write.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(crate) enum Asked {
+            $($column),*
+        }
+
+        /// In that order their names, and their components.
+        const COLUMNS: &[(&str, ComponentOf)] = &[$((stringify!($column), |world| world.component_id::<$column>())),*];
+    };
+}
+asked!(
+    Mass,
+    InertialMass,
+    InternalForce,
+    ExternalForce,
+    ConstrainedAxes,
+    DampingCoefficient,
+    Displacement,
+    DisplacementIncrement
+);
 
 /// Places of systems that a note has room for, and of bits.
 const BITS: u32 = 2 * COLUMNS.len() as u32;
@@ -128,43 +126,46 @@ impl<'a, T> NodeColumns<'a, T> {
     /// Masses that are slow to move (kg), a number a node: the others, where there is no `InertialMass`.
     #[inline(always)]
     pub fn inertia(&self) -> &'a [T] {
-        self.reads(Asked::Inertia);
+        self.reads(Asked::InertialMass);
         self.inertia
     }
 
     /// Which axes are constrained, as bits 0, 1, 2 of a number a node.
     #[inline(always)]
     pub fn axes(&self) -> &'a [u32] {
-        self.reads(Asked::Axes);
+        self.reads(Asked::ConstrainedAxes);
         self.axes
     }
 
     /// Damping coefficients (kg/s), a number a node, where a material is damped.
     #[inline(always)]
     pub fn damping(&self) -> Option<&'a [T]> {
-        self.reads(Asked::Damping);
+        self.reads(Asked::DampingCoefficient);
         self.damping
     }
 
     /// Forces of elements (N), three numbers a node.
     #[inline(always)]
     pub fn internal_force(&self) -> &[T] {
-        self.reads(Asked::Internal);
+        self.reads(Asked::InternalForce);
         self.internal
     }
 
     /// Loads so far (N), three numbers a node; `None` where nothing adds any.
     #[inline(always)]
     pub fn external_force(&self) -> Option<&[T]> {
-        self.reads(Asked::External);
+        self.reads(Asked::ExternalForce);
         self.external.as_deref()
     }
 
     /// The same, to add to.
     #[inline(always)]
     pub fn external_force_mut(&mut self) -> Option<&mut [T]> {
-        self.writes(Asked::External);
-        debug_assert!(self.external.is_some() || !self.may_write(Asked::External), "nobody has made room for loads");
+        self.writes(Asked::ExternalForce);
+        debug_assert!(
+            self.external.is_some() || !self.may_write(Asked::ExternalForce),
+            "nobody has made room for loads"
+        );
         self.external.as_deref_mut()
     }
 
@@ -185,14 +186,14 @@ impl<'a, T> NodeColumns<'a, T> {
     /// Displacements of the last step (m), three numbers a node.
     #[inline(always)]
     pub fn increments(&self) -> &[T] {
-        self.reads(Asked::Increment);
+        self.reads(Asked::DisplacementIncrement);
         self.step
     }
 
     /// The same, to write.
     #[inline(always)]
     pub fn increments_mut(&mut self) -> &mut [T] {
-        self.writes(Asked::Increment);
+        self.writes(Asked::DisplacementIncrement);
         self.step
     }
 }

@@ -11,9 +11,9 @@ use crate::scene::schema::Inversion;
 use crate::systems::Phase;
 use bevy_ecs::prelude::*;
 
-/// Names of the columns of a state that are about something.
-fn state_about(subjects: &[Subject]) -> Vec<&'static str> {
-    names_of(|column| column.role != Role::Scratch && subjects.contains(&column.subject))
+/// Whether the column of a name is of a state, about one of some subjects.
+fn is_about(name: &str, subjects: &[Subject]) -> bool {
+    column_is(name, |column| column.role != Role::Scratch && subjects.contains(&column.subject))
 }
 
 /// Brings the state to the host that a step begins with.
@@ -21,19 +21,17 @@ pub(in super::super) fn bring_state(world: &mut World) -> Result<(), Error> {
     let mut alive = world.query::<&Alive>();
     let mut left = |world: &World| alive.iter(world).flat_map(|alive| &alive.0).filter(|&&alive| alive != 0).count();
     let before = left(world);
-    let read = state_about(&[Subject::Motion, Subject::Constraint, Subject::Removal, Subject::Inversion]);
-    bring_to_host(world, |_, name| read.contains(&name))?;
+    let read = [Subject::Motion, Subject::Constraint, Subject::Removal, Subject::Inversion];
+    bring_to_host(world, |_, name| is_about(name, &read))?;
     if left(world) != before {
-        let of_elements_left = state_about(&[Subject::Mass, Subject::Shape]);
-        bring_to_host(world, |_, name| of_elements_left.contains(&name))?;
+        bring_to_host(world, |_, name| is_about(name, &[Subject::Mass, Subject::Shape]))?;
     }
     Ok(())
 }
 
 /// Sends the state to the device that a step has come to, or has gone back to.
 pub(in super::super) fn send_state(world: &mut World) -> Result<(), Error> {
-    let written = state_about(&[Subject::Motion, Subject::Inversion]);
-    overwrite_on_device(world, |_, name| written.contains(&name))
+    overwrite_on_device(world, |_, name| is_about(name, &[Subject::Motion, Subject::Inversion]))
 }
 
 impl Trial<'_> {
@@ -76,8 +74,7 @@ impl Trial<'_> {
         let moves = |name| name == Displacement::NAME || with_velocities && name == DisplacementIncrement::NAME;
         overwrite_on_device(self.world, |_, name| moves(name) || name == FirstInverted::NAME)?;
         self.run_kernels(|pass| pass.finds_forces)?;
-        let found = state_about(&[Subject::Force, Subject::Inversion]);
-        bring_to_host(self.world, |_, name| found.contains(&name))?;
+        bring_to_host(self.world, |_, name| is_about(name, &[Subject::Force, Subject::Inversion]))?;
         if trying {
             let inverted = must_not_be_inverted(self.world);
             if let Some(mut trial) = self.world.get_resource_mut::<TrialForces>() {
