@@ -173,6 +173,41 @@ fn time_goes_as_fast_as_on_the_wall_or_as_asked() {
 }
 
 #[test]
+fn a_hand_is_not_left_standing_at_the_end_of_a_scene() {
+    let from_above = |session: &mut Session, hand: u32| {
+        let (origin, direction) = (DVec3::new(0.05, 0.05, 1.0), DVec3::NEG_Z);
+        session.command(Command::Grab { hand, origin, direction });
+    };
+    let to_end = |session: &mut Session| {
+        session.command(Command::Speed(100.0));
+        session.command(Command::Run);
+        (0..3).for_each(|_| session.advance(FRAME, AMPLE));
+    };
+    let mut session = session(FALL);
+    from_above(&mut session, 0);
+    to_end(&mut session);
+    let state = session.state();
+    assert!(state.running && state.time > 3.0, "what is held goes on: {} s", state.time);
+    session.command(Command::Reset);
+    session.command(Command::Pause);
+    to_end(&mut session);
+    let state = session.state();
+    assert!(state.finished && !state.running && state.time < 2.01, "what is not held pauses: {} s", state.time);
+    let missed = Command::Grab { hand: 1, origin: DVec3::new(5.0, 5.0, 1.0), direction: DVec3::NEG_Z };
+    session.command(missed);
+    assert!(!session.state().running, "who takes hold of nothing changes nothing");
+    from_above(&mut session, 1);
+    session.command(Command::MoveGrab { hand: 1, target: DVec3::new(0.05, 0.05, 0.12) });
+    let before = session.state().time;
+    session.advance(FRAME, AMPLE);
+    let state = session.state();
+    assert!(state.running && state.time > before && state.held[0].force.length() > 1e-3, "who takes hold then pulls");
+    session.command(Command::Pause);
+    from_above(&mut session, 2);
+    assert!(!session.state().running, "who pauses it has it paused");
+}
+
+#[test]
 fn a_breakdown_is_a_state_and_what_comes_after_it_goes_on() {
     // its upper side goes through its lower one
     let mut session = Session::new(options());

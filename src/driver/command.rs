@@ -7,7 +7,7 @@ use glam::DVec3;
 /// What can be asked of a [`Session`](super::Session).
 #[derive(Clone, Debug)]
 pub enum Command {
-    /// Go on. At the end of the scene it pauses; asked again it goes on beyond.
+    /// Go on. At the end of the scene it pauses, unless a hand holds something; asked again it goes on beyond.
     Run,
     /// Stay.
     Pause,

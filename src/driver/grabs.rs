@@ -11,6 +11,11 @@ use std::collections::BTreeMap;
 pub struct Hands(BTreeMap<u32, (GrabId, Pick)>);
 
 impl Hands {
+    /// Whether any holds something.
+    pub fn hold(&self) -> bool {
+        !self.0.is_empty()
+    }
+
     /// Takes hold of what a ray meets.
     pub fn grab(&mut self, hand: u32, ray: (DVec3, DVec3), simulation: &mut Simulation) -> Result<(), Error> {
         self.release(hand, simulation)?;

@@ -37,6 +37,19 @@ struct Run {
     beyond: bool,
 }
 
+impl Run {
+    /// Whether it stands where the scene ends.
+    fn is_over(&self) -> bool {
+        self.simulation.is_finished() && !self.beyond
+    }
+
+    /// Goes on where the scene ends if a hand holds something, and says whether one does.
+    fn goes_on_in_hands(&mut self) -> bool {
+        self.beyond = self.hands.hold() && !self.simulation.scene().is_static();
+        self.beyond
+    }
+}
+
 impl Session {
     /// A session without a scene. What is loaded can be grabbed, whatever the options say; what is restored, if it
     /// could be where it was kept.
@@ -81,7 +94,7 @@ impl Session {
             return;
         }
         let Some(run) = &mut self.run else { return };
-        if run.simulation.is_finished() && !run.beyond {
+        if run.is_over() && !run.goes_on_in_hands() {
             self.running = false;
             return;
         }
@@ -159,7 +172,7 @@ impl Session {
         }
         match command {
             Command::Run => {
-                run.beyond |= run.simulation.is_finished() && !run.simulation.scene().is_static();
+                run.beyond |= run.is_over() && !run.simulation.scene().is_static();
                 self.running = true;
                 self.pace.stand(run.simulation.time());
             }
@@ -180,6 +193,10 @@ impl Session {
             Command::Input { name, value } => run.simulation.set_input(&name, value)?,
             Command::Grab { hand, origin, direction } => {
                 run.hands.grab(hand, (origin, direction), &mut run.simulation)?;
+                if run.is_over() && run.goes_on_in_hands() {
+                    self.running = true;
+                    self.pace.stand(run.simulation.time());
+                }
             }
             Command::MoveGrab { hand, target } => run.hands.move_to(hand, target, &mut run.simulation)?,
             Command::Release { hand } => run.hands.release(hand, &mut run.simulation)?,
