@@ -19,7 +19,7 @@ use super::repeat::Repeat;
 use super::system::{Phase, System};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
-use crate::contact::{Lists, Near, Point, Shortlist, Stays, Surfaces, Tree};
+use crate::contact::{Lists, Near, Neighbourhoods, Point, Shortlist, Stays, Surfaces, Tree};
 use crate::error::{Error, missing};
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
@@ -139,7 +139,6 @@ struct Surface {
     places: Vec<DVec3>,
     /// Which way the triangles look that are.
     normals: Vec<DVec3>,
-    fresh: Vec<DVec3>,
     /// How far nodes have moved since the lists were made.
     motion: look::Motion,
     /// Of each point in the lists, how far that may be before it has to be looked at again (m), and the least of all.
@@ -147,8 +146,11 @@ struct Surface {
     first_wake: f64,
     /// Of each point in the lists, what of its list matters; empty before they are begun.
     shortlists: Vec<Shortlist>,
-    /// What shortlists allow for: how far nodes have moved since they were begun, and how far faces are looked at (m).
+    /// How far nodes may move from where they were when it was looked last whether these hold, and how far faces may be
+    /// looked at (m).
     stays: Stays,
+    /// Where nodes have moved how far since their shortlists were begun.
+    neighbourhoods: Neighbourhoods,
     /// Nodes that bore a force in the last step.
     pressed: Vec<u32>,
     /// Points that touched or faced something, ascending.
@@ -157,7 +159,8 @@ struct Surface {
     numbers: Vec<(Entity, usize)>,
     // what a step finds, kept so that the next one need not ask for memory
     found: Vec<faced::Found>,
-    kept_by_task: Vec<crate::contact::Kept>,
+    rooms: Vec<faced::Room>,
+    reaches: Vec<f64>,
     gathered: gather::Gathered,
     /// What may touch in an implicit step.
     pairs: Vec<solved::Pair>,
@@ -302,7 +305,7 @@ fn step<T: Scalar>(
                 solved::pair(contacts, of.0, &mut bodies);
             }
             if springs.forces == SpringForces::Stepped {
-                solved::press(contacts, (of.0, springs), &mut bodies);
+                solved::press(contacts, (of.0, springs, of.1), &mut bodies);
             }
         }
         // before the first step nobody has looked
@@ -310,7 +313,7 @@ fn step<T: Scalar>(
         Some(springs) => {
             let mut bodies = slices_of::<T>(contacts, bodies)?;
             motion::update_places(contacts, &bodies, of.1);
-            solved::press(contacts, (of.0, springs), &mut bodies);
+            solved::press(contacts, (of.0, springs, of.1), &mut bodies);
         }
         None => match search::<T>(contacts, of, bodies)? {
             None => {}
@@ -360,7 +363,7 @@ fn search<'a, T: Scalar>(
     }
     motion::update_places(contacts, &bodies, cpu);
     if !contacts.shortlists_hold(reach) {
-        motion::begin_shortlists(contacts, &bodies, reach);
+        motion::renew_shortlists(contacts, &bodies, reach);
     }
     faced::face(contacts, reach, cpu);
     crossings::find(contacts, reach);

@@ -10,7 +10,7 @@ use glam::DVec3;
 pub(super) const ON_IT: f64 = 1e-3;
 
 /// What is at less than this of another distance is nearer, whatever rounding does.
-const NEARER: f64 = 1.0 - 1e-6;
+pub(super) const NEARER: f64 = 1.0 - 1e-6;
 
 /// Triangles that may be near a point, and how far they were when that was found.
 #[derive(Clone, Copy, Debug)]
@@ -63,11 +63,16 @@ impl<'a, 'k> Candidates<'a, 'k> {
         Self { surfaces, now, at, listed, kept, edge }
     }
 
-    /// Finds beforehand where those at such places in the list are nearest.
+    /// Finds beforehand where a triangle is nearest.
     #[inline]
-    pub(super) fn find(&mut self, places: impl Iterator<Item = usize>) {
-        for place in places {
-            let triangle = self.listed.triangles[place];
+    pub(super) fn find(&mut self, triangle: u32) {
+        let nearest = self.nearest_of(triangle);
+        self.kept.0.push((triangle, nearest));
+    }
+
+    /// The same of all in the list; those that cannot be near enough are nowhere.
+    pub(super) fn find_listed(&mut self) {
+        for (place, &triangle) in self.listed.triangles.iter().enumerate() {
             let nowhere = || (OnTriangle { at: DVec3::ZERO, weights: [0.0; 3], part: 0 }, f64::INFINITY);
             let nearest = if self.listed.is_far(place) { nowhere() } else { self.nearest_of(triangle) };
             self.kept.0.push((triangle, nearest));
@@ -98,13 +103,6 @@ impl<'a, 'k> Candidates<'a, 'k> {
     #[inline]
     pub(super) fn is_before(&self, (found, distance): &(OnTriangle, f64)) -> bool {
         found.part == 0 || *distance <= ON_IT * self.edge
-    }
-
-    /// Whether one of the triangles found beforehand shows that the surface around a place that is nearest goes on
-    /// nearer. As a rule the face that a point is in front of is among them, and what is beside it is done with.
-    #[inline]
-    pub(super) fn is_beside(&self, triangle: u32, (found, distance): &(OnTriangle, f64)) -> bool {
-        self.shows_nearer(triangle, found.part, (0.0, NEARER * distance))
     }
 
     /// Whether a triangle found beforehand that shares a part of one is nearer than a distance, by so much (both m).

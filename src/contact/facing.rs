@@ -1,6 +1,7 @@
 //! The face that a point faces.
 
-use super::candidates::{Candidates, Kept, Listed, ON_IT};
+use super::candidates::{Candidates, Kept, Listed, NEARER, ON_IT};
+use super::pairs::Pairs;
 use super::shortlist::{Shortlist, Stays};
 use super::surfaces::{Placed, Point, Surfaces};
 use crate::math::OnTriangle;
@@ -48,60 +49,80 @@ impl Faced {
 }
 
 impl Surfaces {
-    /// What a point faces among triangles that are no farther than `reach` (m), and which of them matter as long as
-    /// nodes move no farther than a shortlist allows for; where that is known, the others are not looked at. `edge` is
-    /// the length of an edge (m).
-    pub fn faced(
-        &self,
-        now: Placed<'_>,
-        point: &Point,
-        listed: Listed<'_>,
-        (reach, edge): (impl Fn(u32) -> f64, f64),
-        (short, stays): (&mut Shortlist, Stays),
-        (faced, kept): (&mut Faced, &mut Kept),
-    ) {
-        (faced.first, faced.second, faced.wakes) = (None, None, short.wakes);
-        match short.places() {
-            Some([]) => return,
-            Some([only]) => {
-                let of = (now, point, point.place(now.places));
-                let only = (usize::from(*only), short.is_turned_away(0));
-                if self.face_alone(of, listed, only, (&reach, edge), faced) {
-                    return;
-                }
-            }
-            _ => {}
+    /// Asks where the triangles of a point's shortlist are nearest, as many as that has.
+    #[inline]
+    pub fn ask(&self, places: &[DVec3], point: &Point, short: &Shortlist, pairs: &mut Pairs) {
+        let triangles = short.triangles().unwrap_or_default();
+        if !triangles.is_empty() {
+            let at = point.place(places);
+            triangles.iter().for_each(|&triangle| pairs.add(at, self.corners(places, triangle)));
         }
-        self.choose((now, point, point.place(now.places)), listed, (reach, edge), (short, stays), (faced, kept));
     }
 
-    /// The same where there is something to choose.
-    #[inline(never)] // all points would make room for what few need
-    fn choose(
+    /// What a point faces whose shortlist was asked about, from such a pair on: where all triangles that matter but one
+    /// at most are far off or beside another, and the point is in front of that one, as for most. Whether that is all
+    /// there is to it. Nothing has come nearer since lists were made than by `nearer`, and faces are looked at that are
+    /// no farther than `reach` (m); `edge` is the length of an edge (m).
+    #[inline]
+    pub fn faced_at_a_glance(
         &self,
-        (now, point, at): (Placed<'_>, &Point, DVec3),
+        (now, point, short): (Placed<'_>, &Point, &Shortlist),
+        (pairs, first): (&Pairs, usize),
+        (nearer, reach, edge): (f64, impl Fn(u32) -> f64, f64),
+        faced: &mut Faced,
+    ) -> bool {
+        let Some(triangles) = short.triangles() else { return false };
+        (faced.first, faced.second, faced.wakes) = (None, None, short.wakes);
+        let mut only = None;
+        for (number, &triangle) in triangles.iter().enumerate() {
+            let distance = pairs.distance(first + number);
+            faced.wakes = faced.wakes.min(distance - nearer);
+            let within = [self.depths[triangle as usize], reach(triangle)];
+            if distance > within[0] && distance > within[1] {
+                continue;
+            }
+            let part = pairs.part(first + number);
+            let is_before = part == 0 || distance <= ON_IT * edge;
+            if !is_before && self.is_beside(triangles, (pairs, first), (number, part)) {
+                continue;
+            }
+            if only.is_some() || !is_before {
+                return false;
+            }
+            only = Some((number, within));
+        }
+        let Some((number, within)) = only else { return true };
+        let (at, found) = pairs.nearest(first + number);
+        let turned = short.is_turned_away(number);
+        self.face_only((now, point, at), (triangles[number], &found, turned), within, faced)
+    }
+
+    /// Whether one of the triangles of a shortlist shows that the surface around the nearest place of another goes on
+    /// nearer.
+    #[inline]
+    fn is_beside(&self, triangles: &[u32], (pairs, first): (&Pairs, usize), (number, part): (usize, usize)) -> bool {
+        let (triangle, farthest) = (triangles[number], NEARER * pairs.distance(first + number));
+        triangles.iter().enumerate().any(|(place, &other)| {
+            place != number && pairs.distance(first + place) < farthest && self.shares_part(other, triangle, part)
+        })
+    }
+
+    /// What a point faces among the triangles of its list that are no farther than `reach` (m), and which of them matter
+    /// as long as nodes move no farther than a shortlist allows for; where that is known, the others are not looked at.
+    /// `edge` is the length of an edge (m).
+    #[inline(never)] // all points would make room for what few need
+    pub fn faced(
+        &self,
+        (now, point): (Placed<'_>, &Point),
         listed: Listed<'_>,
         (reach, edge): (impl Fn(u32) -> f64, f64),
         (short, stays): (&mut Shortlist, Stays),
         (faced, kept): (&mut Faced, &mut Kept),
     ) {
-        let places = short.places();
-        let mut candidates = Candidates::new((self, now), at, listed, edge, kept);
-        if let Some(places) = places {
-            candidates.find(places.iter().map(|&place| usize::from(place)));
-            faced.wakes = short.wakes;
-            if places.len() > 1 && self.face_at_a_glance((now, point, at), (&candidates, short), &reach, faced) {
-                return;
-            }
-        }
+        let mut candidates = Candidates::new((self, now), point.place(now.places), listed, edge, kept);
         let mut way = Way { surfaces: self, now, point, edge, own: None, waiting: None, faced: [None; 2] };
         let mut wakes = f64::INFINITY;
-        let mut look = |candidates: &Candidates<'_, '_>, number: usize, place: usize| {
-            if listed.is_far(place) {
-                wakes = wakes.min(listed.distances[place]);
-                return;
-            }
-            let triangle = listed.triangles[place];
+        let mut look = |candidates: &Candidates<'_, '_>, number: usize, triangle: u32| {
             let &(found, distance) = candidates.nearest(number);
             // both have moved since the list was made
             wakes = wakes.min(distance - listed.nearer);
@@ -114,91 +135,32 @@ impl Surfaces {
                 _ => {}
             }
         };
-        match places {
-            Some(places) => {
-                let places = places.iter().map(|&place| usize::from(place));
-                places.enumerate().for_each(|(number, place)| look(&candidates, number, place));
+        match short.triangles() {
+            Some(triangles) => {
+                triangles.iter().for_each(|&triangle| candidates.find(triangle));
+                triangles.iter().enumerate().for_each(|(number, &triangle)| look(&candidates, number, triangle));
             }
             None => {
-                candidates.find(0..listed.triangles.len());
-                (0..listed.triangles.len()).for_each(|place| look(&candidates, place, place));
+                candidates.find_listed();
+                for (place, &triangle) in listed.triangles.iter().enumerate() {
+                    if !listed.is_far(place) {
+                        look(&candidates, place, triangle);
+                    }
+                }
                 let away = |place: usize| candidates.stays_away(place, reach(listed.triangles[place]), stays);
                 let nearest = |place: usize| match listed.is_far(place) {
                     true => listed.distances[place],
                     false => candidates.nearest(place).1 - listed.nearer,
                 };
+                wakes = (0..listed.triangles.len()).map(nearest).fold(wakes, f64::min);
                 let turned = |place: usize| {
                     point.triangle.is_none() && self.stays_turned_away(now, point, listed.triangles[place], stays.moved)
                 };
-                *short = Shortlist::of(listed.triangles.len(), away, nearest, turned);
+                *short = Shortlist::of(listed.triangles, away, nearest, turned);
             }
         }
         let [first, second] = way.finish();
         *faced = Faced { first, second, wakes: wakes.min(short.wakes) };
-    }
-
-    /// The same of a point with one triangle that matters, at a place in its list, as most have, where it is in front
-    /// of that or far off: nothing is to be chosen then. Whether that is all there is to it.
-    #[inline(always)] // as below
-    fn face_alone(
-        &self,
-        of: (Placed<'_>, &Point, DVec3),
-        listed: Listed<'_>,
-        (place, turned): (usize, bool),
-        (reach, edge): (&impl Fn(u32) -> f64, f64),
-        faced: &mut Faced,
-    ) -> bool {
-        if listed.is_far(place) {
-            faced.wakes = faced.wakes.min(listed.distances[place]);
-            return true;
-        }
-        let (triangle, (now, _, at)) = (listed.triangles[place], of);
-        let found = OnTriangle::nearest(at, self.corners(now.places, triangle));
-        let (distance, depth, reach) = (at.distance(found.at), self.depths[triangle as usize], reach(triangle));
-        faced.wakes = (distance - listed.nearer).min(faced.wakes);
-        if distance > reach && distance > depth {
-            return true;
-        }
-        if found.part != 0 && distance > ON_IT * edge {
-            return false;
-        }
-        self.face_only(of, (triangle, &found, turned), [depth, reach], faced)
-    }
-
-    /// The same where all triangles that matter but one at most are far off or beside another, and the point is in
-    /// front of that one. Whether that is all there is to it.
-    fn face_at_a_glance(
-        &self,
-        of: (Placed<'_>, &Point, DVec3),
-        (candidates, short): (&Candidates<'_, '_>, &Shortlist),
-        reach: &impl Fn(u32) -> f64,
-        faced: &mut Faced,
-    ) -> bool {
-        let (listed, mut only) = (candidates.listed, None);
-        for (number, place) in short.places().unwrap_or_default().iter().map(|&place| usize::from(place)).enumerate() {
-            if listed.is_far(place) {
-                faced.wakes = faced.wakes.min(listed.distances[place]);
-                continue;
-            }
-            let (triangle, nearest) = (listed.triangles[place], candidates.nearest(number));
-            faced.wakes = faced.wakes.min(nearest.1 - listed.nearer);
-            let is_far = nearest.1 > reach(triangle) && nearest.1 > self.depths[triangle as usize];
-            let is_before = candidates.is_before(nearest);
-            if is_far || !is_before && candidates.is_beside(triangle, nearest) {
-                continue;
-            }
-            if only.is_some() || !is_before {
-                return false;
-            }
-            only = Some((triangle, &nearest.0, short.is_turned_away(number)));
-        }
-        match only {
-            None => true,
-            Some(only) => {
-                let within = [self.depths[only.0 as usize], reach(only.0)];
-                self.face_only(of, only, within, faced)
-            }
-        }
     }
 
     /// Faces the only triangle that is in a point's way, which it is in front of, if these look at each other. Whether
@@ -333,4 +295,4 @@ impl Way<'_> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -12,19 +12,59 @@ const WORTH_SHARING: usize = 1024;
 /// Nodes of a contact: at most four of the point's and four of the face's.
 const MOST: usize = 8;
 
+/// Nodes of a contact with signed weights: positive of the point's, negative of the face's.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Parts {
+    /// Places in [`ContactSet::steps`].
+    nodes: [u32; MOST],
+    weights: [f64; MOST],
+    count: usize,
+}
+
+impl Parts {
+    /// Adds a node, eight at most.
+    #[inline]
+    pub fn add(&mut self, node: u32, weight: f64) {
+        if weight != 0.0 && self.count < MOST {
+            (self.nodes[self.count], self.weights[self.count]) = (node, weight);
+            self.count += 1;
+        }
+    }
+
+    /// The nodes with their weights.
+    #[inline]
+    pub fn iter(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let count = self.count.min(MOST);
+        self.nodes[..count].iter().zip(&self.weights[..count]).map(|(&node, &weight)| (node as usize, weight))
+    }
+
+    /// The point's step against the face (m).
+    #[inline]
+    pub fn step(&self, steps: &[DVec3]) -> DVec3 {
+        self.iter().map(|(node, weight)| steps[node] * weight).sum()
+    }
+
+    /// Adds to the nodes' steps what a force on the point (N) does to them.
+    #[inline]
+    fn push(&self, force: DVec3, responses: &[DVec3], steps: &mut [DVec3]) {
+        if force != DVec3::ZERO {
+            self.iter().for_each(|(node, weight)| steps[node] += responses[node] * (force * weight));
+        }
+    }
+}
+
 /// A point and what it faces.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact {
-    /// Places in [`ContactSet::steps`], the first [`count`](Self::count) of them.
-    pub nodes: [u32; MOST],
-    /// Their signed weights: positive of the point's nodes, negative of the face's.
-    pub weights: [f64; MOST],
-    /// How many.
-    pub count: usize,
+    /// Its nodes.
+    pub parts: Parts,
     /// The unit normal, from the face to the point.
     pub normal: DVec3,
     /// The gap (m) before the step, where it is negative no more than may be pushed out in a step.
     pub gap: f64,
+    /// The point's step against the face (m): as it would be, and after [`ContactSet::solve`] as it will be where the
+    /// contact presses.
+    pub step: DVec3,
     /// The largest tangential part of a normal force.
     pub friction: f64,
     /// How far the point has slipped elastically along the face (m).
@@ -44,14 +84,14 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// Of no nodes yet, along a normal with a gap (m), with a coefficient of friction and the slip (m) so far.
-    pub fn new((normal, gap): (DVec3, f64), (friction, slip): (f64, DVec3)) -> Self {
+    /// Of nodes, along a normal with a gap (m), with the step that is predicted (m), a coefficient of friction and the
+    /// slip (m) so far.
+    pub fn new(parts: Parts, (normal, gap, step): (DVec3, f64, DVec3), (friction, slip): (f64, DVec3)) -> Self {
         Self {
-            nodes: [0; MOST],
-            weights: [0.0; MOST],
-            count: 0,
+            parts,
             normal,
             gap,
+            step,
             friction,
             slip,
             pressing: 0.0,
@@ -63,28 +103,9 @@ impl Contact {
         }
     }
 
-    /// Adds a node with its signed weight: positive of the point's, negative of the face's; eight at most.
-    pub fn add(&mut self, node: u32, weight: f64) {
-        if weight != 0.0 && self.count < MOST {
-            (self.nodes[self.count], self.weights[self.count]) = (node, weight);
-            self.count += 1;
-        }
-    }
-
-    /// Its nodes with their weights.
-    pub fn parts(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let count = self.count.min(MOST);
-        self.nodes[..count].iter().zip(&self.weights[..count]).map(|(&node, &weight)| (node as usize, weight))
-    }
-
     /// The force on the point (N).
     pub fn force(&self) -> DVec3 {
         self.normal * self.pressing + self.rubbing
-    }
-
-    /// The point's step against the face (m).
-    pub fn relative(&self, steps: &[DVec3]) -> DVec3 {
-        self.parts().map(|(node, weight)| steps[node] * weight).sum()
     }
 
     /// The part of a vector along the surface.
@@ -92,11 +113,17 @@ impl Contact {
         vector - self.normal * vector.dot(self.normal)
     }
 
-    /// Corrects the normal force, and gives by how much (N).
-    fn press(&mut self, steps: &[DVec3]) -> DVec3 {
+    /// Finds the normal force of the step that was predicted, with the shares of nodes; gives it as a vector (N).
+    fn begin(&mut self, shares: &[f64], responses: &[DVec3]) -> DVec3 {
+        self.find_yields(shares, responses);
+        self.press(self.step)
+    }
+
+    /// Corrects the normal force by a step of the point against the face (m), and gives by how much (N).
+    fn press(&mut self, step: DVec3) -> DVec3 {
         let (gap, before) = match self.springs {
             true => (self.gap, 0.0),
-            false => (self.gap + self.normal.dot(self.relative(steps)), self.pressing),
+            false => (self.gap + self.normal.dot(step), self.pressing),
         };
         let pressing = if self.yields > 0.0 { (before - gap / self.yields).max(0.0) } else { 0.0 };
         let change = self.normal * (pressing - self.pressing);
@@ -110,7 +137,7 @@ impl Contact {
         if self.friction <= 0.0 || self.yields_along <= 0.0 || !presses {
             return DVec3::ZERO;
         }
-        let slip = self.along(self.slip + self.relative(steps));
+        let slip = self.along(self.slip + self.parts.step(steps));
         let wanted = self.along(self.rubbing) - slip / self.yields_along;
         let (bound, size) = (self.friction * self.pressing, wanted.length());
         self.slides = size > bound;
@@ -120,13 +147,18 @@ impl Contact {
         change
     }
 
-    /// Notes how far it has slipped elastically, now that forces are known.
+    /// Notes where the point goes and how far it has slipped elastically, now that forces are known.
     fn note_slip(&mut self, steps: &[DVec3]) {
-        if self.pressing <= 0.0 || self.friction <= 0.0 {
+        if self.pressing <= 0.0 {
             self.slip = DVec3::ZERO;
             return;
         }
-        let slip = self.along(self.slip + self.relative(steps));
+        self.step = self.parts.step(steps);
+        if self.friction <= 0.0 {
+            self.slip = DVec3::ZERO;
+            return;
+        }
+        let slip = self.along(self.slip + self.step);
         let (bound, size) = (self.friction * self.pressing * self.yields_along, slip.length());
         self.slip = if size > bound { slip * (bound / size) } else { slip };
     }
@@ -134,7 +166,7 @@ impl Contact {
     /// Finds how far it yields to forces, from the shares of nodes.
     fn find_yields(&mut self, shares: &[f64], responses: &[DVec3]) {
         let (mut along_normal, mut largest) = (0.0, 0.0);
-        for (node, weight) in self.parts() {
+        for (node, weight) in self.parts.iter() {
             let (share, response) = (weight.abs() * shares[node], responses[node]);
             along_normal += share * self.normal.dot(response * self.normal);
             largest += share * response.max_element();
@@ -165,14 +197,6 @@ pub struct ContactSet {
 }
 
 impl ContactSet {
-    /// Forgets contacts and nodes.
-    pub fn clear(&mut self) {
-        self.contacts.clear();
-        self.steps.clear();
-        self.earlier.clear();
-        self.responses.clear();
-    }
-
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
         let Self { contacts, steps, earlier, responses, shares, changes, starts, of_nodes } = self;
@@ -192,18 +216,13 @@ impl ContactSet {
     /// with exactly the largest force.
     pub fn solve(&mut self, sweeps: usize, cpu: &Cpu) {
         self.list_nodes(cpu);
-        self.changes.clear();
-        self.changes.resize(self.contacts.len(), DVec3::ZERO);
         let (shares, responses) = (self.shares(), std::mem::take(&mut self.responses));
         let rub = self.contacts.iter().any(|contact| contact.friction > 0.0);
         for sweep in 0..sweeps.max(1) {
-            let press = |contact: &mut Contact, steps: &[DVec3]| {
-                if sweep == 0 {
-                    contact.find_yields(&shares, &responses);
-                }
-                contact.press(steps)
-            };
-            self.change(press, &responses, cpu);
+            match sweep {
+                0 => self.begin(&shares, &responses, cpu),
+                _ => self.change(|contact, steps| contact.press(contact.parts.step(steps)), &responses, cpu),
+            }
             if rub {
                 self.change(Contact::rub, &responses, cpu);
             }
@@ -224,13 +243,13 @@ impl ContactSet {
             return;
         }
         starts.resize(steps.len() + 1, 0);
-        contacts.iter().for_each(|contact| contact.parts().for_each(|(node, _)| starts[node + 1] += 1));
+        contacts.iter().for_each(|contact| contact.parts.iter().for_each(|(node, _)| starts[node + 1] += 1));
         (0..steps.len()).for_each(|node| starts[node + 1] += starts[node]);
         of_nodes.clear();
         of_nodes.resize(starts[steps.len()] as usize, (0, 0.0));
         // the start of each node runs to its end, which is the next one's start
         for (number, contact) in (0..).zip(&*contacts) {
-            for (node, weight) in contact.parts() {
+            for (node, weight) in contact.parts.iter() {
                 of_nodes[starts[node] as usize] = (number, weight);
                 starts[node] += 1;
             }
@@ -245,9 +264,21 @@ impl ContactSet {
         shares.clear();
         shares.resize(self.steps.len(), 0.0);
         for contact in &self.contacts {
-            contact.parts().for_each(|(node, weight)| shares[node] += weight.abs());
+            contact.parts.iter().for_each(|(node, weight)| shares[node] += weight.abs());
         }
         shares
+    }
+
+    /// Finds normal forces, and corrects the steps of nodes by that. Steps against faces are known, so that of one
+    /// thread each contact is gone to once.
+    fn begin(&mut self, shares: &[f64], responses: &[DVec3], cpu: &Cpu) {
+        if !self.starts.is_empty() {
+            return self.change(|contact, _| contact.begin(shares, responses), responses, cpu);
+        }
+        for contact in &mut self.contacts {
+            let force = contact.begin(shares, responses);
+            contact.parts.push(force, responses, &mut self.steps);
+        }
     }
 
     /// Corrects forces, and the steps of nodes by that.
@@ -258,6 +289,7 @@ impl ContactSet {
         cpu: &Cpu,
     ) {
         let Self { contacts, steps, changes, starts, of_nodes, .. } = self;
+        changes.resize(contacts.len(), DVec3::ZERO);
         let now = &*steps;
         let tasks = contacts.chunks_mut(CONTACTS_A_TASK).zip(changes.chunks_mut(CONTACTS_A_TASK));
         cpu.for_each(tasks, |(contacts, changes)| {
@@ -265,9 +297,7 @@ impl ContactSet {
         });
         let changes = &*changes;
         if starts.is_empty() {
-            for (contact, change) in contacts.iter().zip(changes).filter(|(_, change)| **change != DVec3::ZERO) {
-                contact.parts().for_each(|(node, weight)| steps[node] += responses[node] * (*change * weight));
-            }
+            contacts.iter().zip(changes).for_each(|(contact, change)| contact.parts.push(*change, responses, steps));
             return;
         }
         cpu.for_each(steps.chunks_mut(CONTACTS_A_TASK).enumerate(), |(task, steps)| {

@@ -103,18 +103,14 @@ pub(super) fn meet<T: Scalar>(
     let mut gathered = std::mem::take(&mut contacts.surface.gathered);
     release(&mut contacts.surface, bodies);
     gathered.clear();
-    let in_step = InStep {
-        largest: contacts.surface.motion.largest,
-        settling: contacts.settling(clock),
-        coefficients: &coefficients,
-    };
+    gathered.foresee(&contacts.surface, &coefficients, bodies, cpu);
+    let in_step = InStep { largest: contacts.surface.motion.largest, settling: contacts.settling(clock) };
     gather(contacts, &mut gathered, &found, &in_step, bodies);
     forget(contacts, &gathered.facing, bodies);
     gathered.set.solve(contacts.sweeps, cpu);
     let work_factor = clock.relaxation.is_none().then_some(coefficients.work_factor);
     note_touches(contacts, &gathered, work_factor, bodies);
-    push(contacts, &gathered.acted_on, bodies);
-    gathered.acted_on.iter().for_each(|&node| gathered.slots[node as usize] = u32::MAX);
+    push(contacts, bodies);
     (contacts.surface.gathered, contacts.surface.found) = (gathered, found);
 }
 
@@ -131,10 +127,10 @@ fn note_touches<T: Scalar>(
     let mut deepest = contacts.surface.figures.deepest;
     for (contact, met) in set.contacts.iter().zip(met).filter(|(contact, _)| contact.pressing > 0.0) {
         let force = contact.force();
-        contact.parts().for_each(|(slot, weight)| forces[slot] += force * weight);
+        contact.parts.iter().for_each(|(slot, weight)| forces[slot] += force * weight);
         let kept = contacts.kept(met.point);
         let touch = bodies[kept.body].kept_mut(kept);
-        let after = contact.relative(&set.steps);
+        let after = contact.step;
         deepest = deepest.max(-(met.gap + contact.normal.dot(after)));
         if met.first {
             set_vector(touch, 0, contact.slip);
@@ -142,7 +138,7 @@ fn note_touches<T: Scalar>(
             touch[5] = T::from_f64(met.gap + contact.normal.dot(after));
         }
         if let Some(work_factor) = work_factor {
-            let before = contact.relative(&set.earlier);
+            let before = contact.parts.step(&set.earlier);
             let along = (after - contact.normal * after.dot(contact.normal)).length();
             let slid = touch[6].to_f64() + if contact.slides { along } else { 0.0 };
             let lost = touch[7].to_f64() - work_factor * force.dot(0.5 * (before + after));
@@ -155,9 +151,9 @@ fn note_touches<T: Scalar>(
 }
 
 /// Adds the forces to the loads, and notes them.
-pub(super) fn push<T: Scalar>(contacts: &mut SurfaceContacts, acted_on: &[u32], bodies: &mut [BodySlices<'_, T>]) {
-    let Surface { nodes, forces, pressed, .. } = &mut contacts.surface;
-    let pushed = acted_on.iter().zip(&*forces).filter(|(_, force)| **force != DVec3::ZERO);
+pub(super) fn push<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &mut [BodySlices<'_, T>]) {
+    let Surface { nodes, near, forces, pressed, .. } = &mut contacts.surface;
+    let pushed = near.nodes.iter().zip(&*forces).filter(|(_, force)| **force != DVec3::ZERO);
     for (&node, &force) in pushed {
         let (body, row) = nodes[node as usize];
         let (columns, row) = (&mut bodies[body as usize], row as usize);

@@ -14,7 +14,7 @@ const TRIANGLES_A_TASK: usize = 1024;
 
 /// How far nodes may move before shortlists are begun anew, in edges: at least and at most; and for how many steps of
 /// the fastest node, between these.
-const STAYS: [f64; 2] = [2e-3, 2e-2];
+const STAYS: [f64; 2] = [2e-3, 5e-2];
 const STEPS_OF_SHORTLISTS: f64 = 20.0;
 
 /// How far faces must be looked at when the fastest node goes so far in a step (m).
@@ -72,6 +72,7 @@ pub(super) fn list<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlic
     let near = surface.triangles.neighbourhood(listed.into_iter(), &among);
     surface.wake.clear();
     surface.wake.resize(surface.lists.points.len(), 0.0);
+    (0..).zip(&near.nodes).for_each(|(slot, &node)| surface.gathered.slots[node as usize] = slot);
     surface.near = near;
     surface.motion.mark_lists(bodies);
     // they are begun when somebody looks
@@ -80,28 +81,42 @@ pub(super) fn list<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlic
     surface.figures.building += started.elapsed();
 }
 
-/// Begins shortlists anew: for nodes that move no farther than some steps of the fastest will take them, and faces that
-/// are looked at no farther than `reach` (m), twice.
-pub(super) fn begin_shortlists<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], reach: f64) {
+/// Begins shortlists anew where nodes have moved so far that they do not hold: for nodes that move no farther than some
+/// steps of the fastest will take them; and all for new lists, and where faces are looked at farther than up to now, as
+/// far as twice `reach` (m).
+pub(super) fn renew_shortlists<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], reach: f64) {
     let edge = contacts.edge;
-    let Surface { motion, shortlists, stays, lists, .. } = &mut contacts.surface;
+    let Surface { triangles, points, places, lists, neighbourhoods, motion, shortlists, stays, .. } =
+        &mut contacts.surface;
     motion.mark_shortlists(bodies);
-    shortlists.clear();
-    shortlists.resize(lists.points.len(), Shortlist::UNKNOWN);
+    let is_known = !shortlists.is_empty() && reach <= stays.reach;
+    if !is_known {
+        neighbourhoods.list(triangles, points, lists);
+        shortlists.resize(lists.points.len(), Shortlist::UNKNOWN);
+        stays.reach = 2.0 * reach;
+    }
     let moved = (STEPS_OF_SHORTLISTS * motion.largest).clamp(STAYS[0] * edge, STAYS[1] * edge);
-    *stays = Stays { moved, reach: 2.0 * reach };
+    stays.moved = neighbourhoods.follow(places, moved, |places| {
+        shortlists.iter_mut().take(places.end).skip(places.start).for_each(|short| *short = Shortlist::UNKNOWN);
+    });
 }
 
 /// Sees where the nodes are that are near something, and which way triangles look.
 pub(super) fn update_places<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], cpu: &Cpu) {
     let near = std::mem::take(&mut contacts.surface.near);
     place(contacts, bodies, Some(&near.nodes));
-    let Surface { triangles, places, normals, fresh, .. } = &mut contacts.surface;
-    fresh.resize(near.triangles.len(), DVec3::ZERO);
-    let tasks = fresh.chunks_mut(TRIANGLES_A_TASK).zip(near.triangles.chunks(TRIANGLES_A_TASK));
-    cpu.for_each(tasks, |(fresh, numbers)| {
-        fresh.iter_mut().zip(numbers).for_each(|(normal, &number)| *normal = triangles.normal(places, number));
+    let Surface { triangles, places, normals, .. } = &mut contacts.surface;
+    let mut left = (0, &mut normals[..]);
+    let tasks = near.triangles.chunks(TRIANGLES_A_TASK).map(|numbers| {
+        let (first, normals) = std::mem::take(&mut left);
+        // they ascend
+        let end = numbers.last().map_or(first, |&last| last as usize + 1);
+        let (normals, normals_left) = normals.split_at_mut(end - first);
+        left = (end, normals_left);
+        (numbers, first, normals)
     });
-    near.triangles.iter().zip(&*fresh).for_each(|(&number, normal)| normals[number as usize] = *normal);
+    cpu.for_each(tasks, |(numbers, first, normals)| {
+        numbers.iter().for_each(|&number| normals[number as usize - first] = triangles.normal(places, number));
+    });
     contacts.surface.near = near;
 }

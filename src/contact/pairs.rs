@@ -1,0 +1,121 @@
+//! Pairs of a point and a triangle: where triangles are nearest, several found side by side in registers.
+
+use crate::backend::cpu::Cpu;
+use crate::math::{Nearest, OnTriangle, SimdScalar};
+use glam::DVec3;
+use pulp::{Simd, WithSimd};
+
+/// Pairs whose numbers are kept side by side; registers divide it.
+const SIDE_BY_SIDE: usize = 8;
+
+/// The numbers of some pairs.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(64))]
+struct Numbers([f64; SIDE_BY_SIDE]);
+
+/// Some pairs.
+#[derive(Clone, Debug, Default)]
+struct Block {
+    /// Along each axis, of the point and of the corners (m).
+    places: [[Numbers; 3]; 4],
+    /// The nearest place (m), what corners have of it, which part of the triangle it is on, and how far it is (m).
+    at: [Numbers; 3],
+    weights: [Numbers; 3],
+    part: Numbers,
+    distance: Numbers,
+}
+
+/// Pairs, and where they are nearest; what has been is written over.
+#[derive(Clone, Debug, Default)]
+pub struct Pairs {
+    blocks: Vec<Block>,
+    count: usize,
+}
+
+impl Pairs {
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.count = 0;
+    }
+
+    /// Adds a place and the corners of a triangle (m).
+    #[inline]
+    pub fn add(&mut self, place: DVec3, [a, b, c]: [DVec3; 3]) {
+        let (block, lane) = (self.count / SIDE_BY_SIDE, self.count % SIDE_BY_SIDE);
+        if block == self.blocks.len() {
+            self.blocks.push(Block::default());
+        }
+        let places = &mut self.blocks[block].places;
+        for (of, at) in places.iter_mut().zip([place, a, b, c]) {
+            (of[0].0[lane], of[1].0[lane], of[2].0[lane]) = (at.x, at.y, at.z);
+        }
+        self.count += 1;
+    }
+
+    /// Finds where all are nearest.
+    pub fn find(&mut self, cpu: &Cpu) {
+        cpu.dispatch(Find { blocks: &mut self.blocks[..self.count.div_ceil(SIDE_BY_SIDE)] });
+    }
+
+    /// How far a point is from its triangle (m).
+    #[inline]
+    pub(super) fn distance(&self, pair: usize) -> f64 {
+        self.blocks[pair / SIDE_BY_SIDE].distance.0[pair % SIDE_BY_SIDE]
+    }
+
+    /// The part of its triangle on which it is nearest.
+    #[inline]
+    pub(super) fn part(&self, pair: usize) -> usize {
+        self.blocks[pair / SIDE_BY_SIDE].part.0[pair % SIDE_BY_SIDE] as usize
+    }
+
+    /// The point (m), and where its triangle is nearest.
+    #[inline]
+    pub(super) fn nearest(&self, pair: usize) -> (DVec3, OnTriangle) {
+        let (block, lane) = (&self.blocks[pair / SIDE_BY_SIDE], pair % SIDE_BY_SIDE);
+        let vector = |[x, y, z]: &[Numbers; 3]| [x.0[lane], y.0[lane], z.0[lane]];
+        let (at, weights, part) = (vector(&block.at).into(), vector(&block.weights), block.part.0[lane] as usize);
+        (vector(&block.places[0]).into(), OnTriangle { at, weights, part })
+    }
+}
+
+/// The task of finding where pairs are nearest.
+struct Find<'a> {
+    blocks: &'a mut [Block],
+}
+
+impl WithSimd for Find<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        for block in self.blocks {
+            let mut first = 0;
+            while first < SIDE_BY_SIDE {
+                find_some(simd, block, first);
+                first += f64::width::<S>();
+            }
+        }
+    }
+}
+
+/// Finds where a register full of pairs is nearest, from one on.
+#[inline(always)]
+fn find_some<S: Simd>(simd: S, block: &mut Block, first: usize) {
+    let [y, a, b, c] = &block.places;
+    let y = [load(simd, &y[0], first), load(simd, &y[1], first), load(simd, &y[2], first)];
+    let a = [load(simd, &a[0], first), load(simd, &a[1], first), load(simd, &a[2], first)];
+    let b = [load(simd, &b[0], first), load(simd, &b[1], first), load(simd, &b[2], first)];
+    let c = [load(simd, &c[0], first), load(simd, &c[1], first), load(simd, &c[2], first)];
+    let found = Nearest::of(y, [a, b, c]);
+    for axis in 0..3 {
+        f64::store(found.at[axis], &mut block.at[axis].0[first..]);
+        f64::store(found.weights[axis], &mut block.weights[axis].0[first..]);
+    }
+    f64::store(found.part, &mut block.part.0[first..]);
+    f64::store(found.distance, &mut block.distance.0[first..]);
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, numbers: &Numbers, first: usize) -> <f64 as SimdScalar>::Vector<S> {
+    f64::load(simd, &numbers.0[first..])
+}
