@@ -1,57 +1,15 @@
 //! The law of contact between bodies: the impulses that keep predicted steps from ending inside one another.
 
+use super::parts::Parts;
 use crate::backend::cpu::Cpu;
-use glam::DVec3;
+use glam::{DVec3, DVec4};
+use pulp::{Simd, WithSimd};
 
 /// Contacts and nodes that a task works on.
 const CONTACTS_A_TASK: usize = 256;
 
 /// So many contacts are worth the threads; fewer are added up one after the other.
 const WORTH_SHARING: usize = 1024;
-
-/// Nodes of a contact: at most four of the point's and four of the face's.
-const MOST: usize = 8;
-
-/// Nodes of a contact with signed weights: positive of the point's, negative of the face's.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Parts {
-    /// Places in [`ContactSet::steps`].
-    nodes: [u32; MOST],
-    weights: [f64; MOST],
-    count: usize,
-}
-
-impl Parts {
-    /// Adds a node, eight at most.
-    #[inline]
-    pub fn add(&mut self, node: u32, weight: f64) {
-        if weight != 0.0 && self.count < MOST {
-            (self.nodes[self.count], self.weights[self.count]) = (node, weight);
-            self.count += 1;
-        }
-    }
-
-    /// The nodes with their weights.
-    #[inline]
-    pub fn iter(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let count = self.count.min(MOST);
-        self.nodes[..count].iter().zip(&self.weights[..count]).map(|(&node, &weight)| (node as usize, weight))
-    }
-
-    /// The point's step against the face (m).
-    #[inline]
-    pub fn step(&self, steps: &[DVec3]) -> DVec3 {
-        self.iter().map(|(node, weight)| steps[node] * weight).sum()
-    }
-
-    /// Adds to the nodes' steps what a force on the point (N) does to them.
-    #[inline]
-    fn push(&self, force: DVec3, responses: &[DVec3], steps: &mut [DVec3]) {
-        if force != DVec3::ZERO {
-            self.iter().for_each(|(node, weight)| steps[node] += responses[node] * (force * weight));
-        }
-    }
-}
 
 /// A point and what it faces.
 #[derive(Clone, Copy, Debug)]
@@ -109,17 +67,20 @@ impl Contact {
     }
 
     /// The part of a vector along the surface.
+    #[inline(always)]
     pub fn along(&self, vector: DVec3) -> DVec3 {
         vector - self.normal * vector.dot(self.normal)
     }
 
     /// Finds the normal force of the step that was predicted, with the shares of nodes; gives it as a vector (N).
-    fn begin(&mut self, shares: &[f64], responses: &[DVec3]) -> DVec3 {
+    #[inline(always)]
+    fn begin(&mut self, shares: &[f64], responses: &[DVec4]) -> DVec3 {
         self.find_yields(shares, responses);
         self.press(self.step)
     }
 
     /// Corrects the normal force by a step of the point against the face (m), and gives by how much (N).
+    #[inline(always)]
     fn press(&mut self, step: DVec3) -> DVec3 {
         let (gap, before) = match self.springs {
             true => (self.gap, 0.0),
@@ -132,7 +93,8 @@ impl Contact {
     }
 
     /// Corrects the tangential force, and gives by how much (N).
-    fn rub(&mut self, steps: &[DVec3]) -> DVec3 {
+    #[inline(always)]
+    fn rub(&mut self, steps: &[DVec4]) -> DVec3 {
         let presses = self.pressing > 0.0 || self.rubbing != DVec3::ZERO;
         if self.friction <= 0.0 || self.yields_along <= 0.0 || !presses {
             return DVec3::ZERO;
@@ -148,7 +110,8 @@ impl Contact {
     }
 
     /// Notes where the point goes and how far it has slipped elastically, now that forces are known.
-    fn note_slip(&mut self, steps: &[DVec3]) {
+    #[inline(always)]
+    fn note_slip(&mut self, steps: &[DVec4]) {
         if self.pressing <= 0.0 {
             self.slip = DVec3::ZERO;
             return;
@@ -164,11 +127,13 @@ impl Contact {
     }
 
     /// Finds how far it yields to forces, from the shares of nodes.
-    fn find_yields(&mut self, shares: &[f64], responses: &[DVec3]) {
+    #[inline(always)]
+    fn find_yields(&mut self, shares: &[f64], responses: &[DVec4]) {
         let (mut along_normal, mut largest) = (0.0, 0.0);
-        for (node, weight) in self.parts.iter() {
-            let (share, response) = (weight.abs() * shares[node], responses[node]);
-            along_normal += share * self.normal.dot(response * self.normal);
+        let ((nodes, weights), normal) = (self.parts.slices(), self.normal.extend(0.0));
+        for (&node, weight) in nodes.iter().zip(weights) {
+            let (share, response) = (weight.abs() * shares[node as usize], responses[node as usize]);
+            along_normal += share * normal.dot(response * normal);
             largest += share * response.max_element();
         }
         (self.yields, self.yields_along) = (along_normal, largest);
@@ -178,14 +143,15 @@ impl Contact {
 /// Contacts that act in the same step, and the nodes they act on.
 #[derive(Clone, Debug, Default)]
 pub struct ContactSet {
-    /// The contacts.
+    /// The contacts. Those that [`solve`](Self::solve) is to find forces of are [added](Self::add).
     pub contacts: Vec<Contact>,
-    /// The nodes' next steps (m): as they would be, and after [`solve`](Self::solve) as they will be.
-    pub steps: Vec<DVec3>,
+    /// The nodes' next steps (m): as they would be, and after [`solve`](Self::solve) as they will be. Of each vector of
+    /// a node the fourth number is 0: so it fills a register.
+    pub steps: Vec<DVec4>,
     /// What they were in the step before (m).
-    pub earlier: Vec<DVec3>,
+    pub earlier: Vec<DVec4>,
     /// How far a node goes for a force along each axis (m/N); 0 where it is held.
-    pub responses: Vec<DVec3>,
+    pub responses: Vec<DVec4>,
     /// Into how many shares each node's mass is split.
     shares: Vec<f64>,
     /// What a sweep changes of each contact's force (N).
@@ -197,6 +163,22 @@ pub struct ContactSet {
 }
 
 impl ContactSet {
+    /// Forgets all contacts.
+    pub fn clear(&mut self) {
+        self.contacts.clear();
+        self.shares.clear();
+    }
+
+    /// Adds a contact of nodes whose steps are there, and splits their mass.
+    #[inline]
+    pub fn add(&mut self, contact: Contact) {
+        if self.shares.len() < self.steps.len() {
+            self.shares.resize(self.steps.len(), 0.0);
+        }
+        contact.parts.iter().for_each(|(node, weight)| self.shares[node] += weight.abs());
+        self.contacts.push(contact);
+    }
+
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
         let Self { contacts, steps, earlier, responses, shares, changes, starts, of_nodes } = self;
@@ -216,22 +198,20 @@ impl ContactSet {
     /// with exactly the largest force.
     pub fn solve(&mut self, sweeps: usize, cpu: &Cpu) {
         self.list_nodes(cpu);
-        let (shares, responses) = (self.shares(), std::mem::take(&mut self.responses));
+        let (shares, responses) = (std::mem::take(&mut self.shares), std::mem::take(&mut self.responses));
         let rub = self.contacts.iter().any(|contact| contact.friction > 0.0);
         for sweep in 0..sweeps.max(1) {
             match sweep {
                 0 => self.begin(&shares, &responses, cpu),
-                _ => self.change(|contact, steps| contact.press(contact.parts.step(steps)), &responses, cpu),
+                _ => self.change(Correction::Pressing, &responses, cpu),
             }
             if rub {
-                self.change(Contact::rub, &responses, cpu);
+                self.change(Correction::Rubbing, &responses, cpu);
             }
         }
         (self.shares, self.responses) = (shares, responses);
         let steps = &self.steps;
-        cpu.for_each(self.contacts.chunks_mut(CONTACTS_A_TASK), |contacts| {
-            contacts.iter_mut().for_each(|contact| contact.note_slip(steps));
-        });
+        cpu.for_each(self.contacts.chunks_mut(CONTACTS_A_TASK), |contacts| cpu.dispatch(Note { contacts, steps }));
     }
 
     /// Lists contacts by node where there are so many that threads add up what they do: in the order in which one
@@ -258,58 +238,125 @@ impl ContactSet {
         starts[0] = 0;
     }
 
-    /// Into how many shares the mass of each node is split among its contacts.
-    fn shares(&mut self) -> Vec<f64> {
-        let mut shares = std::mem::take(&mut self.shares);
-        shares.clear();
-        shares.resize(self.steps.len(), 0.0);
-        for contact in &self.contacts {
-            contact.parts.iter().for_each(|(node, weight)| shares[node] += weight.abs());
-        }
-        shares
-    }
-
     /// Finds normal forces, and corrects the steps of nodes by that. Steps against faces are known, so that of one
     /// thread each contact is gone to once.
-    fn begin(&mut self, shares: &[f64], responses: &[DVec3], cpu: &Cpu) {
+    fn begin(&mut self, shares: &[f64], responses: &[DVec4], cpu: &Cpu) {
         if !self.starts.is_empty() {
-            return self.change(|contact, _| contact.begin(shares, responses), responses, cpu);
+            return self.change(Correction::First { shares, responses }, responses, cpu);
         }
-        for contact in &mut self.contacts {
-            let force = contact.begin(shares, responses);
-            contact.parts.push(force, responses, &mut self.steps);
-        }
+        let Self { contacts, steps, .. } = self;
+        cpu.dispatch(Begin { contacts, shares, responses, steps });
     }
 
     /// Corrects forces, and the steps of nodes by that.
-    fn change(
-        &mut self,
-        correct: impl Fn(&mut Contact, &[DVec3]) -> DVec3 + Sync + Send,
-        responses: &[DVec3],
-        cpu: &Cpu,
-    ) {
+    fn change(&mut self, correction: Correction<'_>, responses: &[DVec4], cpu: &Cpu) {
         let Self { contacts, steps, changes, starts, of_nodes, .. } = self;
         changes.resize(contacts.len(), DVec3::ZERO);
         let now = &*steps;
         let tasks = contacts.chunks_mut(CONTACTS_A_TASK).zip(changes.chunks_mut(CONTACTS_A_TASK));
         cpu.for_each(tasks, |(contacts, changes)| {
-            contacts.iter_mut().zip(changes).for_each(|(contact, change)| *change = correct(contact, now));
+            cpu.dispatch(Correct { correction, contacts, changes, steps: now });
         });
         let changes = &*changes;
         if starts.is_empty() {
-            contacts.iter().zip(changes).for_each(|(contact, change)| contact.parts.push(*change, responses, steps));
-            return;
+            return cpu.dispatch(Push { contacts, changes, responses, steps });
         }
         cpu.for_each(steps.chunks_mut(CONTACTS_A_TASK).enumerate(), |(task, steps)| {
             for (node, step) in (task * CONTACTS_A_TASK..).zip(steps) {
                 for &(contact, weight) in &of_nodes[starts[node] as usize..starts[node + 1] as usize] {
                     let change = changes[contact as usize];
                     if change != DVec3::ZERO {
-                        *step += responses[node] * (change * weight);
+                        *step += responses[node] * (change * weight).extend(0.0);
                     }
                 }
             }
         });
+    }
+}
+
+/// What is corrected of forces.
+#[derive(Clone, Copy)]
+enum Correction<'a> {
+    /// [`Contact::begin`].
+    First { shares: &'a [f64], responses: &'a [DVec4] },
+    /// [`Contact::press`].
+    Pressing,
+    /// [`Contact::rub`].
+    Rubbing,
+}
+
+/// The task of finding normal forces, contact by contact, and what they do to nodes.
+struct Begin<'a> {
+    contacts: &'a mut [Contact],
+    shares: &'a [f64],
+    responses: &'a [DVec4],
+    steps: &'a mut [DVec4],
+}
+
+impl WithSimd for Begin<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        for contact in self.contacts {
+            let force = contact.begin(self.shares, self.responses);
+            contact.parts.push(force, self.responses, self.steps);
+        }
+    }
+}
+
+/// The task of correcting forces by the steps of nodes as they are.
+struct Correct<'a> {
+    correction: Correction<'a>,
+    contacts: &'a mut [Contact],
+    changes: &'a mut [DVec3],
+    steps: &'a [DVec4],
+}
+
+impl WithSimd for Correct<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        for (contact, change) in self.contacts.iter_mut().zip(self.changes) {
+            *change = match self.correction {
+                Correction::First { shares, responses } => contact.begin(shares, responses),
+                Correction::Pressing => contact.press(contact.parts.step(self.steps)),
+                Correction::Rubbing => contact.rub(self.steps),
+            };
+        }
+    }
+}
+
+/// The task of finding what changes of forces do to nodes, in the order of contacts.
+struct Push<'a> {
+    contacts: &'a [Contact],
+    changes: &'a [DVec3],
+    responses: &'a [DVec4],
+    steps: &'a mut [DVec4],
+}
+
+impl WithSimd for Push<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        for (contact, change) in self.contacts.iter().zip(self.changes) {
+            contact.parts.push(*change, self.responses, self.steps);
+        }
+    }
+}
+
+/// The task of noting where points go.
+struct Note<'a> {
+    contacts: &'a mut [Contact],
+    steps: &'a [DVec4],
+}
+
+impl WithSimd for Note<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        for contact in self.contacts {
+            contact.note_slip(self.steps);
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
 use crate::contact::{Contact, ContactSet, Parts};
 use crate::math::Scalar;
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 
 /// How far a point that is inside comes out in a step at most, in edges.
 pub(super) const OUT: f64 = 0.1;
@@ -57,7 +57,7 @@ impl Gathered {
     }
 
     pub fn clear(&mut self) {
-        self.set.contacts.clear();
+        self.set.clear();
         self.met.clear();
         self.facing.clear();
     }
@@ -73,14 +73,15 @@ impl Gathered {
     ) {
         let near = &surface.near.nodes;
         let ContactSet { steps, earlier, responses, .. } = &mut self.set;
-        [&mut *steps, &mut *earlier, &mut *responses].map(|all| all.resize(near.len(), DVec3::ZERO));
+        [&mut *steps, &mut *earlier, &mut *responses].map(|all| all.resize(near.len(), DVec4::ZERO));
         let of_steps = steps.chunks_mut(NODES_A_TASK).zip(earlier.chunks_mut(NODES_A_TASK));
         let tasks = near.chunks(NODES_A_TASK).zip(of_steps.zip(responses.chunks_mut(NODES_A_TASK)));
         cpu.for_each(tasks, |(nodes, ((steps, earlier), responses))| {
             for (((node, step), before), response) in nodes.iter().zip(steps).zip(earlier).zip(responses) {
                 let (body, row) = surface.nodes[*node as usize];
                 let of_node = bodies[body as usize].foresee(row as usize, coefficients);
-                (*step, *before, *response) = (of_node.step, of_node.before, of_node.free / of_node.to_force);
+                (*step, *before) = (of_node.step.extend(0.0), of_node.before.extend(0.0));
+                *response = (of_node.free / of_node.to_force).extend(0.0);
             }
         });
     }
@@ -96,7 +97,7 @@ impl Gathered {
         (spring, outside, within): (Option<ContactSpring>, f64, f64),
         met: Met,
     ) {
-        let Self { set: ContactSet { contacts, steps, earlier, .. }, slots, .. } = self;
+        let Self { set, slots, .. } = self;
         let mut parts = Parts::default();
         for (&node, &weight) in of_point.0.iter().zip(of_point.1) {
             parts.add(slots[node as usize], weight);
@@ -104,15 +105,15 @@ impl Gathered {
         for (&node, &weight) in of_face.0.iter().zip(of_face.1) {
             parts.add(slots[node as usize], -weight);
         }
-        let step = parts.step(steps);
+        let step = parts.step(&set.steps);
         let (gap, ends) = match spring {
             None => (gap, gap + normal.dot(step)),
-            Some(spring) => (spring.gap(outside, normal.dot(parts.step(earlier))), outside),
+            Some(spring) => (spring.gap(outside, normal.dot(parts.step(&set.earlier))), outside),
         };
         if ends < within {
             let mut contact = Contact::new(parts, (normal, gap, step), resists);
             contact.springs = spring.is_some();
-            contacts.push(contact);
+            set.add(contact);
             self.met.push(met);
         }
     }

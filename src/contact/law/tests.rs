@@ -7,6 +7,10 @@ fn one() -> Cpu {
     Cpu::new(1, 0, Default::default())
 }
 
+fn wide(random: &mut Rng) -> DVec4 {
+    vector(random).extend(0.0)
+}
+
 fn vector(random: &mut Rng) -> DVec3 {
     DVec3::from_array([0; 3].map(|_| 2.0 * random.f64() - 1.0))
 }
@@ -16,8 +20,8 @@ fn random_set(random: &mut Rng, friction: f64, least: f64) -> (ContactSet, Vec<f
     let count = random.usize(6..30);
     let masses: Vec<f64> = (0..count).map(|_| 10.0_f64.powf(3.0 * random.f64())).collect();
     let mut set = ContactSet {
-        steps: (0..count).map(|_| vector(random)).collect(),
-        responses: masses.iter().map(|mass| DVec3::splat(1.0 / mass)).collect(),
+        steps: (0..count).map(|_| wide(random)).collect(),
+        responses: masses.iter().map(|mass| DVec3::splat(1.0 / mass).extend(0.0)).collect(),
         ..ContactSet::default()
     };
     for _ in 0..random.usize(1..40) {
@@ -36,16 +40,16 @@ fn random_set(random: &mut Rng, friction: f64, least: f64) -> (ContactSet, Vec<f
         (0..3).for_each(|i| parts.add(nodes[3 + i], -weights[i] / sum));
         let step = parts.step(&set.steps);
         let contact = Contact::new(parts, (normal, 0.4 * random.f64() - least, step), (friction, DVec3::ZERO));
-        set.contacts.push(contact);
+        set.add(contact);
         // twice the same
         if random.u8(0..4) == 0 {
-            set.contacts.push(contact);
+            set.add(contact);
         }
     }
     (set, masses)
 }
 
-fn kinetic(masses: &[f64], steps: &[DVec3]) -> f64 {
+fn kinetic(masses: &[f64], steps: &[DVec4]) -> f64 {
     masses.iter().zip(steps).map(|(mass, step)| 0.5 * mass * step.length_squared()).sum()
 }
 
@@ -60,7 +64,7 @@ fn momentum_stays_and_energy_is_below_its_bound() {
         let sweeps = 1 + round % 5 / 2;
         let before = set.clone();
         set.solve(sweeps, &one());
-        let momentum = |steps: &[DVec3]| masses.iter().zip(steps).map(|(mass, step)| *step * *mass).sum::<DVec3>();
+        let momentum = |steps: &[DVec4]| masses.iter().zip(steps).map(|(mass, step)| *step * *mass).sum::<DVec4>();
         let scale: f64 = masses.iter().zip(&before.steps).map(|(mass, step)| mass * step.length()).sum();
         let change = (momentum(&set.steps) - momentum(&before.steps)).length();
         assert!(change <= 1e-12 * scale, "momentum changed by {change} of {scale}");
@@ -104,13 +108,13 @@ fn shares_of_mass_majorise_the_coupling_of_contacts() {
     let mut largest = 0.0_f64;
     for _ in 0..300 {
         let (mut set, _) = random_set(&mut random, 0.0, 0.0);
-        let (shares, responses) = (set.shares(), set.responses.clone());
+        let (shares, responses) = (set.shares.clone(), set.responses.clone());
         set.contacts.iter_mut().for_each(|contact| contact.find_yields(&shares, &responses));
         let count = set.contacts.len();
         let mut forces: Vec<f64> = (0..count).map(|_| random.f64()).collect();
         let mut growth = 0.0;
         for _ in 0..200 {
-            let mut steps = vec![DVec3::ZERO; set.steps.len()];
+            let mut steps = vec![DVec4::ZERO; set.steps.len()];
             for (contact, force) in set.contacts.iter().zip(&forces) {
                 contact.parts.push(contact.normal * *force, &set.responses, &mut steps);
             }
@@ -138,8 +142,8 @@ fn threads_find_the_same_forces() {
     let mut random = Rng::with_seed(5);
     let count = 900;
     let mut set = ContactSet {
-        steps: (0..count).map(|_| vector(&mut random)).collect(),
-        responses: (0..count).map(|_| DVec3::splat(0.1 + random.f64())).collect(),
+        steps: (0..count).map(|_| wide(&mut random)).collect(),
+        responses: (0..count).map(|_| DVec3::splat(0.1 + random.f64()).extend(0.0)).collect(),
         ..ContactSet::default()
     };
     for _ in 0..3 * WORTH_SHARING {
@@ -149,7 +153,7 @@ fn threads_find_the_same_forces() {
         parts.add(first, 1.0);
         (1..4).for_each(|next| parts.add(first + next, -1.0 / 3.0));
         let step = parts.step(&set.steps);
-        set.contacts.push(Contact::new(parts, (normal, 0.2 * random.f64() - 0.1, step), (0.3, DVec3::ZERO)));
+        set.add(Contact::new(parts, (normal, 0.2 * random.f64() - 0.1, step), (0.3, DVec3::ZERO)));
     }
     let mut shared = set.clone();
     set.solve(2, &one());
@@ -162,20 +166,20 @@ fn threads_find_the_same_forces() {
 #[test]
 fn one_contact_ends_on_the_surface_and_friction_holds_it() {
     let mut set = ContactSet {
-        steps: vec![DVec3::new(0.3, 0.0, -1.0), DVec3::ZERO],
-        responses: vec![DVec3::splat(0.5), DVec3::ZERO],
+        steps: vec![DVec4::new(0.3, 0.0, -1.0, 0.0), DVec4::ZERO],
+        responses: vec![DVec4::new(0.5, 0.5, 0.5, 0.0), DVec4::ZERO],
         ..ContactSet::default()
     };
     let mut parts = Parts::default();
     parts.add(0, 1.0);
     parts.add(1, -1.0);
-    set.contacts.push(Contact::new(parts, (DVec3::Z, 0.25, set.steps[0]), (0.5, DVec3::ZERO)));
+    set.add(Contact::new(parts, (DVec3::Z, 0.25, set.steps[0].truncate()), (0.5, DVec3::ZERO)));
     set.solve(1, &one());
-    assert_eq!(set.steps[0], DVec3::new(0.0, 0.0, -0.25));
+    assert_eq!(set.steps[0], DVec4::new(0.0, 0.0, -0.25, 0.0));
     assert_eq!((set.contacts[0].pressing, set.contacts[0].slides), (1.5, false));
     // with too little friction it slides on, held by μ N
-    set.steps[0] = DVec3::new(0.3, 0.0, -1.0);
-    set.contacts[0] = Contact::new(parts, (DVec3::Z, 0.25, set.steps[0]), (0.2, DVec3::ZERO));
+    set.steps[0] = DVec4::new(0.3, 0.0, -1.0, 0.0);
+    set.contacts[0] = Contact::new(parts, (DVec3::Z, 0.25, set.steps[0].truncate()), (0.2, DVec3::ZERO));
     set.solve(1, &one());
     assert!((set.steps[0].x - 0.15).abs() < 1e-15 && set.contacts[0].slides, "{:?}", set.steps);
 }
