@@ -166,7 +166,6 @@ struct Surface {
     pairs: Vec<solved::Pair>,
     /// Of each contact of an implicit step what it did at the end of the last one, and its slopes.
     solved: Vec<solved::Solved>,
-    forces: Vec<DVec3>,
     figures: Figures,
 }
 

@@ -3,7 +3,7 @@
 use super::parts::Parts;
 use crate::backend::cpu::Cpu;
 use glam::{DVec3, DVec4};
-use pulp::{Simd, WithSimd};
+use tasks::{Begin, Correct, Correction, Forces, Note, Push};
 
 /// Contacts and nodes that a task works on.
 const CONTACTS_A_TASK: usize = 256;
@@ -31,6 +31,10 @@ pub struct Contact {
     pub pressing: f64,
     /// The tangential force on it (N).
     pub rubbing: DVec3,
+    /// How far it slides in the step (m), and what its force does in that (J, but for what the lengths of steps make of
+    /// it), by the mean of this step and the one before. Both are found where it presses.
+    pub slid: f64,
+    pub work: f64,
     /// Whether friction does not hold it.
     pub slides: bool,
     /// Whether a spring presses: by the gap alone, whatever the step that is predicted.
@@ -54,6 +58,8 @@ impl Contact {
             slip,
             pressing: 0.0,
             rubbing: DVec3::ZERO,
+            slid: 0.0,
+            work: 0.0,
             slides: false,
             springs: false,
             yields: 0.0,
@@ -62,6 +68,7 @@ impl Contact {
     }
 
     /// The force on the point (N).
+    #[inline(always)]
     pub fn force(&self) -> DVec3 {
         self.normal * self.pressing + self.rubbing
     }
@@ -109,14 +116,16 @@ impl Contact {
         change
     }
 
-    /// Notes where the point goes and how far it has slipped elastically, now that forces are known.
+    /// Notes where the point goes, what its force does, and how far it has slipped elastically, now that forces are known.
     #[inline(always)]
-    fn note_slip(&mut self, steps: &[DVec4]) {
+    fn note(&mut self, steps: &[DVec4], earlier: &[DVec4]) {
         if self.pressing <= 0.0 {
             self.slip = DVec3::ZERO;
             return;
         }
         self.step = self.parts.step(steps);
+        self.work = self.force().dot(0.5 * (self.parts.step(earlier) + self.step));
+        self.slid = if self.slides { self.along(self.step).length() } else { 0.0 };
         if self.friction <= 0.0 {
             self.slip = DVec3::ZERO;
             return;
@@ -152,6 +161,8 @@ pub struct ContactSet {
     pub earlier: Vec<DVec4>,
     /// How far a node goes for a force along each axis (m/N); 0 where it is held.
     pub responses: Vec<DVec4>,
+    /// The forces on nodes (N), where [`find_forces`](Self::find_forces) has found them.
+    pub forces: Vec<DVec4>,
     /// Into how many shares each node's mass is split.
     shares: Vec<f64>,
     /// What a sweep changes of each contact's force (N).
@@ -181,10 +192,10 @@ impl ContactSet {
 
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
-        let Self { contacts, steps, earlier, responses, shares, changes, starts, of_nodes } = self;
+        let Self { contacts, steps, earlier, responses, forces, shares, changes, starts, of_nodes } = self;
         let of_contacts = size_of_val(&contacts[..]) + size_of_val(&changes[..]) + size_of_val(&of_nodes[..]);
-        let vectors = size_of_val(&steps[..]) + size_of_val(&earlier[..]) + size_of_val(&responses[..]);
-        of_contacts + vectors + size_of_val(&shares[..]) + size_of_val(&starts[..])
+        let vectors = [steps, earlier, responses, forces].map(|all| size_of_val(&all[..]));
+        of_contacts + vectors.iter().sum::<usize>() + size_of_val(&shares[..]) + size_of_val(&starts[..])
     }
 
     /// Finds the forces.
@@ -210,8 +221,17 @@ impl ContactSet {
             }
         }
         (self.shares, self.responses) = (shares, responses);
-        let steps = &self.steps;
-        cpu.for_each(self.contacts.chunks_mut(CONTACTS_A_TASK), |contacts| cpu.dispatch(Note { contacts, steps }));
+        let (steps, earlier) = (&self.steps, &self.earlier);
+        let tasks = self.contacts.chunks_mut(CONTACTS_A_TASK);
+        cpu.for_each(tasks, |contacts| cpu.dispatch(Note { contacts, steps, earlier }));
+    }
+
+    /// Finds what contacts do to nodes, in the order of contacts.
+    pub fn find_forces(&mut self, cpu: &Cpu) {
+        let Self { contacts, steps, forces, .. } = self;
+        forces.clear();
+        forces.resize(steps.len(), DVec4::ZERO);
+        cpu.dispatch(Forces { contacts, forces });
     }
 
     /// Lists contacts by node where there are so many that threads add up what they do: in the order in which one
@@ -274,91 +294,6 @@ impl ContactSet {
     }
 }
 
-/// What is corrected of forces.
-#[derive(Clone, Copy)]
-enum Correction<'a> {
-    /// [`Contact::begin`].
-    First { shares: &'a [f64], responses: &'a [DVec4] },
-    /// [`Contact::press`].
-    Pressing,
-    /// [`Contact::rub`].
-    Rubbing,
-}
-
-/// The task of finding normal forces, contact by contact, and what they do to nodes.
-struct Begin<'a> {
-    contacts: &'a mut [Contact],
-    shares: &'a [f64],
-    responses: &'a [DVec4],
-    steps: &'a mut [DVec4],
-}
-
-impl WithSimd for Begin<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        for contact in self.contacts {
-            let force = contact.begin(self.shares, self.responses);
-            contact.parts.push(force, self.responses, self.steps);
-        }
-    }
-}
-
-/// The task of correcting forces by the steps of nodes as they are.
-struct Correct<'a> {
-    correction: Correction<'a>,
-    contacts: &'a mut [Contact],
-    changes: &'a mut [DVec3],
-    steps: &'a [DVec4],
-}
-
-impl WithSimd for Correct<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        for (contact, change) in self.contacts.iter_mut().zip(self.changes) {
-            *change = match self.correction {
-                Correction::First { shares, responses } => contact.begin(shares, responses),
-                Correction::Pressing => contact.press(contact.parts.step(self.steps)),
-                Correction::Rubbing => contact.rub(self.steps),
-            };
-        }
-    }
-}
-
-/// The task of finding what changes of forces do to nodes, in the order of contacts.
-struct Push<'a> {
-    contacts: &'a [Contact],
-    changes: &'a [DVec3],
-    responses: &'a [DVec4],
-    steps: &'a mut [DVec4],
-}
-
-impl WithSimd for Push<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        for (contact, change) in self.contacts.iter().zip(self.changes) {
-            contact.parts.push(*change, self.responses, self.steps);
-        }
-    }
-}
-
-/// The task of noting where points go.
-struct Note<'a> {
-    contacts: &'a mut [Contact],
-    steps: &'a [DVec4],
-}
-
-impl WithSimd for Note<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        for contact in self.contacts {
-            contact.note_slip(self.steps);
-        }
-    }
-}
-
+mod tasks;
 #[cfg(test)]
 mod tests;

@@ -49,6 +49,15 @@ impl Parts {
         step.truncate()
     }
 
+    /// Adds to the forces on nodes (N) what a force on the point is to them.
+    #[inline(always)] // likewise
+    pub(super) fn share(&self, force: DVec3, forces: &mut [DVec4]) {
+        let ((nodes, weights), force) = (self.slices(), force.extend(0.0));
+        for (&node, &weight) in nodes.iter().zip(weights) {
+            forces[node as usize] += force * weight;
+        }
+    }
+
     /// Adds to the nodes' steps what a force on the point (N) does to them.
     #[inline(always)] // likewise
     pub(super) fn push(&self, force: DVec3, responses: &[DVec4], steps: &mut [DVec4]) {

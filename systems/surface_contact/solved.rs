@@ -185,18 +185,11 @@ pub(super) fn press<T: Scalar>(
         add(contacts, &mut gathered, (pair, gap), (springs, time), bodies, &mut solved);
     }
     if springs.forces.are_noted() {
-        let mut forces = std::mem::take(&mut contacts.surface.forces);
-        forces.clear();
-        forces.resize(gathered.set.steps.len(), DVec3::ZERO);
-        for contact in &gathered.set.contacts {
-            let force = contact.force();
-            contact.parts.iter().for_each(|(slot, weight)| forces[slot] += force * weight);
-        }
-        contacts.surface.forces = forces;
+        gathered.set.find_forces(cpu);
         release(&mut contacts.surface, bodies);
         forget(contacts, &gathered.facing, bodies);
         note(contacts, (&gathered, clock.relaxation.is_none()), &pairs, &solved, bodies);
-        push(contacts, bodies);
+        push(contacts, &gathered.set.forces, bodies);
     }
     (contacts.surface.gathered, contacts.surface.pairs, contacts.surface.solved) = (gathered, pairs, solved);
 }

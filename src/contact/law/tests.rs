@@ -19,8 +19,10 @@ fn vector(random: &mut Rng) -> DVec3 {
 fn random_set(random: &mut Rng, friction: f64, least: f64) -> (ContactSet, Vec<f64>) {
     let count = random.usize(6..30);
     let masses: Vec<f64> = (0..count).map(|_| 10.0_f64.powf(3.0 * random.f64())).collect();
+    let steps: Vec<DVec4> = (0..count).map(|_| wide(random)).collect();
     let mut set = ContactSet {
-        steps: (0..count).map(|_| wide(random)).collect(),
+        earlier: steps.clone(),
+        steps,
         responses: masses.iter().map(|mass| DVec3::splat(1.0 / mass).extend(0.0)).collect(),
         ..ContactSet::default()
     };
@@ -68,6 +70,11 @@ fn momentum_stays_and_energy_is_below_its_bound() {
         let scale: f64 = masses.iter().zip(&before.steps).map(|(mass, step)| mass * step.length()).sum();
         let change = (momentum(&set.steps) - momentum(&before.steps)).length();
         assert!(change <= 1e-12 * scale, "momentum changed by {change} of {scale}");
+        set.find_forces(&one());
+        let went = set.steps.iter().zip(&before.steps).zip(&masses).map(|((after, before), m)| (after - before) * *m);
+        let most = set.forces.iter().map(|force| force.length()).fold(0.0, f64::max);
+        let off = went.zip(&set.forces).map(|(went, force)| went.distance(*force)).fold(0.0, f64::max);
+        assert!(off <= 1e-12 * (scale + most), "forces are off by {off} of {most}");
         let [earlier, later] = [&before, &set].map(|set| kinetic(&masses, &set.steps));
         assert!(least > 0.0 || later <= earlier * (1.0 + 1e-12), "{later} of {earlier} J");
         // the bound of one sweep: each contact takes at least what a point of its own would lose, and gives at most
@@ -86,14 +93,7 @@ fn momentum_stays_and_energy_is_below_its_bound() {
             assert!(later <= earlier + most + 1e-12 * earlier, "{later} of {earlier} and {most} J");
         }
         // what is lost is what the forces took
-        let took: f64 = set
-            .contacts
-            .iter()
-            .map(|contact| {
-                let [earlier, later] = [&before, &set].map(|set| contact.parts.step(&set.steps));
-                contact.force().dot(0.5 * (earlier + later))
-            })
-            .sum();
+        let took: f64 = set.contacts.iter().map(|contact| contact.work).sum();
         assert!((later - earlier - took).abs() <= 1e-11 * earlier, "{} and {took}", later - earlier);
         for contact in &set.contacts {
             assert!(contact.pressing >= 0.0 && contact.rubbing.length() <= friction * contact.pressing * (1.0 + 1e-12));
@@ -143,6 +143,7 @@ fn threads_find_the_same_forces() {
     let count = 900;
     let mut set = ContactSet {
         steps: (0..count).map(|_| wide(&mut random)).collect(),
+        earlier: vec![DVec4::ZERO; count],
         responses: (0..count).map(|_| DVec3::splat(0.1 + random.f64()).extend(0.0)).collect(),
         ..ContactSet::default()
     };
@@ -167,6 +168,7 @@ fn threads_find_the_same_forces() {
 fn one_contact_ends_on_the_surface_and_friction_holds_it() {
     let mut set = ContactSet {
         steps: vec![DVec4::new(0.3, 0.0, -1.0, 0.0), DVec4::ZERO],
+        earlier: vec![DVec4::ZERO; 2],
         responses: vec![DVec4::new(0.5, 0.5, 0.5, 0.0), DVec4::ZERO],
         ..ContactSet::default()
     };
