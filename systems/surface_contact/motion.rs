@@ -9,8 +9,8 @@ use crate::math::Scalar;
 use glam::DVec3;
 use web_time::Instant;
 
-/// Triangles whose normals a task finds.
-const TRIANGLES_A_TASK: usize = 1024;
+/// Nodes whose places a task finds, and triangles whose normals.
+const NUMBERS_A_TASK: usize = 1024;
 
 /// How far nodes may move before shortlists are begun anew, in edges: at least and at most; and for how many steps of
 /// the fastest node, between these.
@@ -35,26 +35,34 @@ impl SurfaceContacts {
     }
 }
 
-/// Sees where some nodes are.
-fn place<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], of: Option<&[u32]>) {
-    let SurfaceContacts { surface, reference, .. } = contacts;
-    let (nodes, places) = (&surface.nodes, &mut surface.places);
-    let place = |node: usize| {
-        let (body, row) = nodes[node];
-        let (of_body, row) = (&bodies[body as usize], row as usize);
-        of_body.rest[row] - *reference + vector(of_body.u, row)
-    };
-    match of {
-        Some(some) => some.iter().for_each(|&node| places[node as usize] = place(node as usize)),
-        None => places.iter_mut().enumerate().for_each(|(node, at)| *at = place(node)),
-    }
+/// Where a node is (m, from the reference).
+fn place<T: Scalar>(contacts: &SurfaceContacts, bodies: &[BodySlices<'_, T>], node: usize) -> DVec3 {
+    let (body, row) = contacts.surface.nodes[node];
+    let (of_body, row) = (&bodies[body as usize], row as usize);
+    of_body.rest[row] - contacts.reference + vector(of_body.u, row)
+}
+
+/// Some ascending numbers a task, with the values of these and of those between, and the number of the first value.
+fn tasks<'a, T>(
+    numbers: &'a [u32],
+    mut left: &'a mut [T],
+) -> impl Iterator<Item = (&'a [u32], usize, &'a mut [T])> {
+    let mut first = 0;
+    numbers.chunks(NUMBERS_A_TASK).map(move |numbers| {
+        let end = numbers.last().map_or(first, |&last| last as usize + 1);
+        let (values, others) = std::mem::take(&mut left).split_at_mut(end - first);
+        left = others;
+        (numbers, std::mem::replace(&mut first, end), values)
+    })
 }
 
 /// Makes the lists anew, of all that is within `reach` (m) and thickness, and a skin.
 pub(super) fn list<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], reach: f64, cpu: &Cpu) {
     let farthest = contacts.farthest(reach);
     let started = Instant::now();
-    place(contacts, bodies, None);
+    let mut places = std::mem::take(&mut contacts.surface.places);
+    places.iter_mut().enumerate().for_each(|(node, at)| *at = place(contacts, bodies, node));
+    contacts.surface.places = places;
     let mut trees = std::mem::take(&mut contacts.surface.trees);
     let meets = |point: u32, face: u32, of_face: bool| contacts.meets(point, face, of_face);
     let Surface { triangles, points, places, apart, .. } = &contacts.surface;
@@ -103,20 +111,13 @@ pub(super) fn renew_shortlists<T: Scalar>(contacts: &mut SurfaceContacts, bodies
 
 /// Sees where the nodes are that are near something, and which way triangles look.
 pub(super) fn update_places<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], cpu: &Cpu) {
-    let near = std::mem::take(&mut contacts.surface.near);
-    place(contacts, bodies, Some(&near.nodes));
-    let Surface { triangles, places, normals, .. } = &mut contacts.surface;
-    let mut left = (0, &mut normals[..]);
-    let tasks = near.triangles.chunks(TRIANGLES_A_TASK).map(|numbers| {
-        let (first, normals) = std::mem::take(&mut left);
-        // they ascend
-        let end = numbers.last().map_or(first, |&last| last as usize + 1);
-        let (normals, normals_left) = normals.split_at_mut(end - first);
-        left = (end, normals_left);
-        (numbers, first, normals)
+    let mut places = std::mem::take(&mut contacts.surface.places);
+    cpu.for_each(tasks(&contacts.surface.near.nodes, &mut places), |(nodes, first, places)| {
+        nodes.iter().for_each(|&node| places[node as usize - first] = place(contacts, bodies, node as usize));
     });
-    cpu.for_each(tasks, |(numbers, first, normals)| {
+    contacts.surface.places = places;
+    let Surface { near, triangles, places, normals, .. } = &mut contacts.surface;
+    cpu.for_each(tasks(&near.triangles, normals), |(numbers, first, normals)| {
         numbers.iter().for_each(|&number| normals[number as usize - first] = triangles.normal(places, number));
     });
-    contacts.surface.near = near;
 }
