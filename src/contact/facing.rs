@@ -119,7 +119,8 @@ impl Surfaces {
         (short, stays): (&mut Shortlist, Stays),
         (faced, kept): (&mut Faced, &mut Kept),
     ) {
-        let mut candidates = Candidates::new((self, now), point.place(now.places), listed, edge, kept);
+        let Kept { nearest, around } = kept;
+        let mut candidates = Candidates::new((self, now), point.place(now.places), listed, edge, nearest);
         let mut way = Way { surfaces: self, now, point, edge, own: None, waiting: None, faced: [None; 2] };
         let mut wakes = f64::INFINITY;
         let mut look = |candidates: &Candidates<'_, '_>, number: usize, triangle: u32| {
@@ -153,8 +154,16 @@ impl Surfaces {
                     false => candidates.nearest(place).1 - listed.nearer,
                 };
                 wakes = (0..listed.triangles.len()).map(nearest).fold(wakes, f64::min);
+                around.clear();
+                if point.triangle.is_none() {
+                    let of = |&own: &u32| (now.normals[own as usize], self.turns(now, own, stays.moved));
+                    around.extend(self.around(point.nodes[0]).iter().map(of));
+                }
                 let turned = |place: usize| {
-                    point.triangle.is_none() && self.stays_turned_away(now, point, listed.triangles[place], stays.moved)
+                    let triangle = listed.triangles[place];
+                    let (normal, turn) = (now.normals[triangle as usize], self.turns(now, triangle, stays.moved));
+                    let stays_so = |(own, of_own): &(DVec3, f64)| own.dot(normal) < -(of_own + turn + of_own * turn);
+                    point.triangle.is_none() && around.iter().all(stays_so)
                 };
                 *short = Shortlist::of(listed.triangles, away, nearest, turned);
             }
@@ -203,19 +212,12 @@ impl Surfaces {
         first.normal.dot(second.normal) < CORNER && rises()
     }
 
-    /// Whether a triangle stays turned away from all around a node, as long as no two nodes move against each other by
-    /// more than a distance m: the unit normal of one with sides a, b and area A changes by 2 m (a + b + m)/2A at most.
-    fn stays_turned_away(&self, now: Placed<'_>, point: &Point, triangle: u32, moved: f64) -> bool {
-        let turns = |triangle: u32| {
-            let [a, b, c] = self.corners(now.places, triangle);
-            let (one, other) = (b - a, c - a);
-            2.0 * moved * (one.length() + other.length() + moved) / one.cross(other).length()
-        };
-        let (normal, turn) = (now.normals[triangle as usize], turns(triangle));
-        self.around(point.nodes[0]).iter().all(|&own| {
-            let of_own = turns(own);
-            now.normals[own as usize].dot(normal) < -(of_own + turn + of_own * turn)
-        })
+    /// By how much the unit normal of a triangle with sides a, b and area A changes at most, as long as no two nodes move
+    /// against each other by more than a distance m: 2 m (a + b + m)/2A.
+    fn turns(&self, now: Placed<'_>, triangle: u32, moved: f64) -> f64 {
+        let [a, b, c] = self.corners(now.places, triangle);
+        let (one, other) = (b - a, c - a);
+        2.0 * moved * (one.length() + other.length() + moved) / one.cross(other).length()
     }
 
     /// Whether a direction is turned away from the normals of all triangles around a node: then it is from the node's
