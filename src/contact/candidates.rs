@@ -126,7 +126,7 @@ impl<'a, 'k> Candidates<'a, 'k> {
     /// How far the point is outside of a triangle, whose nearest place is known; `None` where another triangle must be
     /// nearer, and of triangles without area.
     pub(super) fn outside(&self, triangle: u32, (found, distance): (OnTriangle, f64)) -> Option<Facing> {
-        let normal = self.now.normals[triangle as usize];
+        let normal = self.surfaces.normal_now(self.now, triangle);
         if normal == DVec3::ZERO || !found.at.is_finite() {
             return None;
         }

@@ -32,6 +32,19 @@ pub struct Facing {
     pub gap: f64,
 }
 
+/// The normal of the triangle that the last point of a face was on, as is the next as a rule.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Own(Option<(u32, DVec3)>);
+
+impl Own {
+    fn normal(&mut self, surfaces: &Surfaces, now: Placed<'_>, triangle: u32) -> DVec3 {
+        match self.0.filter(|(known, _)| *known == triangle) {
+            Some((_, normal)) => normal,
+            None => self.0.insert((triangle, surfaces.normal_now(now, triangle))).1,
+        }
+    }
+}
+
 /// What a point faces: the face in its way, and where that is a wall of a corner, the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Faced {
@@ -69,7 +82,7 @@ impl Surfaces {
         (now, point, short): (Placed<'_>, &Point, &Shortlist),
         (pairs, first): (&Pairs, usize),
         (nearer, reach, edge): (f64, impl Fn(u32) -> f64, f64),
-        faced: &mut Faced,
+        (faced, own): (&mut Faced, &mut Own),
     ) -> bool {
         let Some(triangles) = short.triangles() else { return false };
         (faced.first, faced.second, faced.wakes) = (None, None, short.wakes);
@@ -91,10 +104,23 @@ impl Surfaces {
             }
             only = Some((number, within));
         }
-        let Some((number, within)) = only else { return true };
-        let (at, found) = pairs.nearest(first + number);
-        let turned = short.is_turned_away(number);
-        self.face_only((now, point, at), (triangles[number], &found, turned), within, faced)
+        let Some((number, [depth, reach])) = only else { return true };
+        let (found, normal, gap) = pairs.nearest(first + number);
+        // what has no area has no direction either
+        let is_there = normal != DVec3::ZERO && normal.is_finite() && found.at.is_finite();
+        if !(is_there && gap >= -depth && gap <= reach) {
+            return true;
+        }
+        let is_turned_away = match point.triangle {
+            Some(triangle) => normal.dot(own.normal(self, now, triangle)) < TURNED_AWAY,
+            None => short.is_turned_away(number) || self.all_turned_away(now, point.nodes[0], normal),
+        };
+        if is_turned_away {
+            let OnTriangle { at, weights, .. } = found;
+            faced.first = Some(Facing { triangle: triangles[number], weights, at, normal, gap });
+        }
+        // of a node its own normal may have it otherwise
+        is_turned_away || point.triangle.is_some()
     }
 
     /// Whether one of the triangles of a shortlist shows that the surface around the nearest place of another goes on
@@ -156,12 +182,12 @@ impl Surfaces {
                 wakes = (0..listed.triangles.len()).map(nearest).fold(wakes, f64::min);
                 around.clear();
                 if point.triangle.is_none() {
-                    let of = |&own: &u32| (now.normals[own as usize], self.turns(now, own, stays.moved));
+                    let of = |&own: &u32| (self.normal_now(now, own), self.turns(now, own, stays.moved));
                     around.extend(self.around(point.nodes[0]).iter().map(of));
                 }
                 let turned = |place: usize| {
                     let triangle = listed.triangles[place];
-                    let (normal, turn) = (now.normals[triangle as usize], self.turns(now, triangle, stays.moved));
+                    let (normal, turn) = (self.normal_now(now, triangle), self.turns(now, triangle, stays.moved));
                     let stays_so = |(own, of_own): &(DVec3, f64)| own.dot(normal) < -(of_own + turn + of_own * turn);
                     point.triangle.is_none() && around.iter().all(stays_so)
                 };
@@ -170,34 +196,6 @@ impl Surfaces {
         }
         let [first, second] = way.finish();
         *faced = Faced { first, second, wakes: wakes.min(short.wakes) };
-    }
-
-    /// Faces the only triangle that is in a point's way, which it is in front of, if these look at each other. Whether
-    /// that is known of a node without its own normal.
-    #[inline(always)] // what it is told goes through memory otherwise, which takes as long as all it does
-    fn face_only(
-        &self,
-        (now, point, at): (Placed<'_>, &Point, DVec3),
-        (triangle, found, turned): (u32, &OnTriangle, bool),
-        [depth, reach]: [f64; 2],
-        faced: &mut Faced,
-    ) -> bool {
-        let normal = now.normals[triangle as usize];
-        if normal == DVec3::ZERO || !found.at.is_finite() {
-            return true;
-        }
-        let gap = (at - found.at).dot(normal);
-        if !(gap >= -depth && gap <= reach) {
-            return true;
-        }
-        let is_turned_away = match point.triangle {
-            Some(own) => normal.dot(now.normals[own as usize]) < TURNED_AWAY,
-            None => turned || self.all_turned_away(now, point.nodes[0], normal),
-        };
-        if is_turned_away {
-            faced.first = Some(Facing { triangle, weights: found.weights, at: found.at, normal, gap });
-        }
-        is_turned_away || point.triangle.is_some()
     }
 
     /// Whether two faces are walls of a corner that the point is in: the second rises before the first. A node on an
@@ -223,7 +221,7 @@ impl Surfaces {
     /// Whether a direction is turned away from the normals of all triangles around a node: then it is from the node's
     /// own, which lies between them.
     fn all_turned_away(&self, now: Placed<'_>, node: u32, normal: DVec3) -> bool {
-        self.around(node).iter().all(|&triangle| now.normals[triangle as usize].dot(normal) <= 0.0)
+        self.around(node).iter().all(|&triangle| self.normal_now(now, triangle).dot(normal) <= 0.0)
     }
 }
 
@@ -256,7 +254,7 @@ impl Way<'_> {
     fn choose(&mut self, facing: Facing) {
         let Self { surfaces, now, point, edge, .. } = *self;
         let own = *self.own.get_or_insert_with(|| match point.triangle {
-            Some(triangle) => now.normals[triangle as usize],
+            Some(triangle) => surfaces.normal_now(now, triangle),
             None => surfaces.normal_of_node(now, point.nodes[0]),
         });
         let turned = facing.normal.dot(own);

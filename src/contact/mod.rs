@@ -19,7 +19,7 @@ pub use boxes::Tree;
 pub use candidates::{Kept, Listed};
 pub use edges::{Crossing, Edge, distance};
 pub use face_points::{bilinear, face_points};
-pub use facing::{Faced, Facing, TURNED_AWAY};
+pub use facing::{Faced, Facing, Own, TURNED_AWAY};
 pub use law::{Contact, ContactSet};
 pub use lists::{Finder, Lists};
 pub use neighbourhoods::Neighbourhoods;

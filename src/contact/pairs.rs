@@ -18,11 +18,13 @@ struct Numbers([f64; SIDE_BY_SIDE]);
 struct Block {
     /// Along each axis, of the point and of the corners (m).
     places: [[Numbers; 3]; 4],
-    /// The nearest place (m), what corners have of it, which part of the triangle it is on, and how far it is (m).
+    /// Where they are nearest ([`Nearest`]).
     at: [Numbers; 3],
     weights: [Numbers; 3],
+    normal: [Numbers; 3],
     part: Numbers,
     distance: Numbers,
+    gap: Numbers,
 }
 
 /// Pairs, and where they are nearest; what has been is written over.
@@ -69,13 +71,14 @@ impl Pairs {
         self.blocks[pair / SIDE_BY_SIDE].part.0[pair % SIDE_BY_SIDE] as usize
     }
 
-    /// The point (m), and where its triangle is nearest.
+    /// Where its triangle is nearest, the unit normal of that (no number of one without area), and how far the point is
+    /// along it (m).
     #[inline]
-    pub(super) fn nearest(&self, pair: usize) -> (DVec3, OnTriangle) {
+    pub(super) fn nearest(&self, pair: usize) -> (OnTriangle, DVec3, f64) {
         let (block, lane) = (&self.blocks[pair / SIDE_BY_SIDE], pair % SIDE_BY_SIDE);
         let vector = |[x, y, z]: &[Numbers; 3]| [x.0[lane], y.0[lane], z.0[lane]];
         let (at, weights, part) = (vector(&block.at).into(), vector(&block.weights), block.part.0[lane] as usize);
-        (vector(&block.places[0]).into(), OnTriangle { at, weights, part })
+        (OnTriangle { at, weights, part }, vector(&block.normal).into(), block.gap.0[lane])
     }
 }
 
@@ -110,9 +113,11 @@ fn find_some<S: Simd>(simd: S, block: &mut Block, first: usize) {
     for axis in 0..3 {
         f64::store(found.at[axis], &mut block.at[axis].0[first..]);
         f64::store(found.weights[axis], &mut block.weights[axis].0[first..]);
+        f64::store(found.normal[axis], &mut block.normal[axis].0[first..]);
     }
     f64::store(found.part, &mut block.part.0[first..]);
     f64::store(found.distance, &mut block.distance.0[first..]);
+    f64::store(found.gap, &mut block.gap.0[first..]);
 }
 
 #[inline(always)]

@@ -54,6 +54,11 @@ impl Shortlist {
         short
     }
 
+    /// Whether it is known.
+    pub fn is_known(&self) -> bool {
+        self.count != NONE
+    }
+
     /// How many they are; none where they are not known.
     pub fn count(&self) -> usize {
         self.triangles().map_or(0, <[u32]>::len)

@@ -98,6 +98,10 @@ pub struct Nearest<R> {
     pub part: R,
     /// How far that is (m).
     pub distance: R,
+    /// The unit normal of the triangle, of one without area no number.
+    pub normal: [R; 3],
+    /// How far that is along the normal (m).
+    pub gap: R,
 }
 
 impl<R: Real> Nearest<R> {
@@ -113,7 +117,14 @@ impl<R: Real> Nearest<R> {
         let all = off_ab + off_bc + off_ca;
         let (v, w) = (off_ca / all, off_ab / all);
         let inside = plus(plus(a, times(ab, v)), times(ac, w));
-        let mut found = Self { at: inside, weights: [one - v - w, v, w], part: zero, distance: zero };
+        let across = [
+            ab[1] * ac[2] - ac[1] * ab[2],
+            ab[2] * ac[0] - ac[2] * ab[0],
+            ab[0] * ac[1] - ac[0] * ab[1],
+        ];
+        let normal = times(across, one / dot(across, across).sqrt());
+        let weights = [one - v - w, v, w];
+        let mut found = Self { at: inside, weights, part: zero, distance: zero, normal, gap: zero };
         // from the last region to the first
         let t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
         let is = at_most_zero(off_bc, at_least_zero(d4 - d3, at_least_zero(d5 - d6, one)));
@@ -128,7 +139,7 @@ impl<R: Real> Nearest<R> {
         found.take(at_least_zero(d3, at_least_zero(d3 - d4, one)), b, [zero, one, zero], 5.0);
         found.take(at_most_zero(d1, at_most_zero(d2, one)), a, [one, zero, zero], 4.0);
         let off = minus(y, found.at);
-        found.distance = dot(off, off).sqrt();
+        (found.distance, found.gap) = (dot(off, off).sqrt(), dot(off, normal));
         found
     }
 

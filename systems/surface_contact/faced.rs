@@ -1,13 +1,18 @@
 //! What points face now.
 
+use super::motion::update_normals;
 use super::{Surface, SurfaceContacts};
 use crate::backend::cpu::Cpu;
-use crate::contact::{Faced, Kept, Listed, Pairs, Placed, Shortlist, Stays};
+use crate::contact::{Faced, Kept, Listed, Own, Pairs, Placed, Shortlist, Stays};
 
 /// Points that a task looks at, and of how many at once it is found where their triangles are nearest: their numbers
 /// stay in the nearest cache.
 const POINTS_A_TASK: usize = 128;
 const POINTS_AT_ONCE: usize = 32;
+
+/// Where more than one of so many points goes through its list, the normals of all that is near are found beforehand:
+/// else few are asked for.
+const KNOWN: usize = 8;
 
 /// What a point faces.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +43,7 @@ struct Awake<'a> {
 struct Looking<'a> {
     contacts: &'a SurfaceContacts,
     cpu: &'a Cpu,
+    now: Placed<'a>,
     /// How far faces are looked at that a point of a body meets of a body (m), at their numbers as in
     /// [`SurfaceContacts::meetings`].
     reaches: &'a [f64],
@@ -77,6 +83,11 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
     let [nearer, lately] = [&contacts.surface.motion.lists, &contacts.surface.motion.shortlists].map(|mark| mark.moved);
     let surface = &mut contacts.surface;
     let mut found = std::mem::take(&mut surface.found);
+    let unknown = found.iter().filter(|found| !surface.shortlists[found.place as usize].is_known()).count();
+    let has_normals = KNOWN * unknown > found.len() || !surface.crossings.near.is_empty();
+    if has_normals {
+        update_normals(surface, cpu);
+    }
     let mut rooms = std::mem::take(&mut surface.rooms);
     let mut reaches = std::mem::take(&mut surface.reaches);
     let mut shortlists = std::mem::take(&mut surface.shortlists);
@@ -87,7 +98,10 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
     reaches.extend(meetings.map(|meeting| reach + meeting.map_or(0.0, |meeting| meeting.thickness)));
     let stays = Stays { moved: lately, reach: contacts.surface.stays.reach - reach };
     let farthest = contacts.farthest(reach);
-    let looking = Looking { contacts, cpu, reaches: &reaches, nearer, farthest, stays };
+    let surface = &contacts.surface;
+    let normals = if has_normals { &surface.normals[..] } else { &[] };
+    let now = Placed { places: &surface.places, normals };
+    let looking = Looking { contacts, cpu, now, reaches: &reaches, nearer, farthest, stays };
     let mut left = (0, &mut shortlists[..], &mut wake[..]);
     let tasks = found.chunks_mut(POINTS_A_TASK).zip(&mut rooms).map(|(found, room)| {
         let (first, shortlists, wake) = std::mem::take(&mut left);
@@ -108,8 +122,8 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
 impl Looking<'_> {
     /// Finds what some points face.
     fn face(&self, Awake { found, first, shortlists, wake, room: Room { pairs, kept } }: Awake<'_>) {
-        let surface = &self.contacts.surface;
-        let (now, edge) = (Placed { places: &surface.places, normals: &surface.normals }, self.contacts.edge);
+        let Looking { contacts, now, .. } = *self;
+        let (surface, edge, mut own) = (&contacts.surface, contacts.edge, Own::default());
         for found in found.chunks_mut(POINTS_AT_ONCE) {
             pairs.clear();
             for Found { place, .. } in &*found {
@@ -122,12 +136,13 @@ impl Looking<'_> {
                 let place = *place as usize;
                 let (point, short) =
                     (&surface.points[surface.lists.points[place] as usize], &mut shortlists[place - first]);
-                let of_point = &self.reaches[point.body as usize * self.contacts.bodies.len()..];
+                let of_point = &self.reaches[point.body as usize * contacts.bodies.len()..];
                 let reach = |triangle: u32| of_point[surface.triangles.bodies[triangle as usize] as usize];
                 let asked = (&*pairs, pair);
                 pair += short.count();
                 let at_a_glance = (self.nearer, reach, edge);
-                if !surface.triangles.faced_at_a_glance((now, point, short), asked, at_a_glance, faced) {
+                let seen = (&mut *faced, &mut own);
+                if !surface.triangles.faced_at_a_glance((now, point, short), asked, at_a_glance, seen) {
                     let (triangles, distances) = (surface.lists.triangles(place), surface.lists.distances(place));
                     let listed = Listed { triangles, distances, nearer: self.nearer, farthest: self.farthest };
                     let moved = surface.neighbourhoods.stays(place) + self.stays.moved;

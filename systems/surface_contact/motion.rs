@@ -109,14 +109,18 @@ pub(super) fn renew_shortlists<T: Scalar>(contacts: &mut SurfaceContacts, bodies
     });
 }
 
-/// Sees where the nodes are that are near something, and which way triangles look.
+/// Sees where the nodes are that are near something.
 pub(super) fn update_places<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], cpu: &Cpu) {
     let mut places = std::mem::take(&mut contacts.surface.places);
     cpu.for_each(tasks(&contacts.surface.near.nodes, &mut places), |(nodes, first, places)| {
         nodes.iter().for_each(|&node| places[node as usize - first] = place(contacts, bodies, node as usize));
     });
     contacts.surface.places = places;
-    let Surface { near, triangles, places, normals, .. } = &mut contacts.surface;
+}
+
+/// Sees which way the triangles look that are near something.
+pub(super) fn update_normals(surface: &mut Surface, cpu: &Cpu) {
+    let Surface { near, triangles, places, normals, .. } = surface;
     cpu.for_each(tasks(&near.triangles, normals), |(numbers, first, normals)| {
         numbers.iter().for_each(|&number| normals[number as usize - first] = triangles.normal(places, number));
     });

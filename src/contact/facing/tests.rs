@@ -19,8 +19,13 @@ pub(in crate::contact) fn by_shortlist(
     pairs.add(DVec3::ZERO, [DVec3::X, DVec3::Y, DVec3::Z]);
     surfaces.ask(now.places, point, short, &mut pairs);
     pairs.find(&Cpu::new(1, 0, Default::default()));
-    let of = (now, point, short);
-    let is_all = surfaces.faced_at_a_glance(of, (&pairs, 1), (listed.nearer, reach, 1.0), &mut seen);
+    // with normals that are known, and with those that are asked for
+    let mut is_all = [now.normals, &[][..]].into_iter().map(|normals| {
+        let of = (Placed { normals, ..now }, point, short);
+        let seen = (&mut seen, &mut Own::default());
+        surfaces.faced_at_a_glance(of, (&pairs, 1), (listed.nearer, reach, 1.0), seen)
+    });
+    let is_all = is_all.all(|is_all| is_all);
     assert!(!is_all || seen == chosen, "{seen:?}, {chosen:?}");
     (chosen, is_all)
 }

@@ -38,7 +38,7 @@ fn side_by_side_is_the_same_nearest_place() {
         let mut place = || [number(), number(), number()];
         let (y, corners) = (place(), [place(), place(), place()]);
         let one_by_one = OnTriangle::nearest(y.into(), corners.map(DVec3::from));
-        let Nearest { at, weights, part, distance } = Nearest::of(y, corners);
+        let Nearest { at, weights, part, distance, normal, gap } = Nearest::of(y, corners);
         let found = OnTriangle { at: at.into(), weights, part: part as usize };
         if !one_by_one.at.is_finite() {
             assert!(!found.at.is_finite(), "{found:?}");
@@ -46,6 +46,12 @@ fn side_by_side_is_the_same_nearest_place() {
         }
         assert_eq!(found, one_by_one, "{y:?}, {corners:?}");
         assert_eq!(distance, DVec3::from(y).distance(one_by_one.at));
+        let [a, b, c] = corners.map(DVec3::from);
+        let across = (b - a).cross(c - a).normalize_or_zero();
+        assert_eq!(across == DVec3::ZERO, !DVec3::from(normal).is_finite());
+        if across != DVec3::ZERO {
+            assert_eq!((DVec3::from(normal), gap), (across, (DVec3::from(y) - one_by_one.at).dot(across)));
+        }
         parts[found.part] += 1;
     }
     assert!(parts.iter().all(|&count| count > 100), "{parts:?}");
