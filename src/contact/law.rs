@@ -161,7 +161,7 @@ pub struct ContactSet {
     pub earlier: Vec<DVec4>,
     /// How far a node goes for a force along each axis (m/N); 0 where it is held.
     pub responses: Vec<DVec4>,
-    /// The forces on nodes (N), where [`find_forces`](Self::find_forces) has found them.
+    /// The forces on nodes (N) that [`solve`](Self::solve) or [`find_forces`](Self::find_forces) has found.
     pub forces: Vec<DVec4>,
     /// Into how many shares each node's mass is split.
     shares: Vec<f64>,
@@ -224,6 +224,7 @@ impl ContactSet {
         let (steps, earlier) = (&self.steps, &self.earlier);
         let tasks = self.contacts.chunks_mut(CONTACTS_A_TASK);
         cpu.for_each(tasks, |contacts| cpu.dispatch(Note { contacts, steps, earlier }));
+        self.find_forces(cpu);
     }
 
     /// Finds what contacts do to nodes, in the order of contacts.

@@ -108,7 +108,6 @@ pub(super) fn meet<T: Scalar>(
     gather(contacts, &mut gathered, &found, &in_step, bodies);
     forget(contacts, &gathered.facing, bodies);
     gathered.set.solve(contacts.sweeps, cpu);
-    gathered.set.find_forces(cpu);
     let work_factor = clock.relaxation.is_none().then_some(coefficients.work_factor);
     note_touches(contacts, &gathered, work_factor, bodies);
     push(contacts, &gathered.set.forces, bodies);
