@@ -12,6 +12,10 @@ const POINTS: usize = 64;
 /// A neighbourhood begins anew when it is looked at and less than this is left of how far it may move.
 const LEFT: f64 = 0.25;
 
+/// One also begins anew that may move so many times as far as is asked for: the farther nodes may move, the more is in a
+/// point's way.
+const WIDE: f64 = 8.0;
+
 /// What rounding takes of a difference at most, and more.
 const ROUNDING: f64 = 1e-6;
 
@@ -25,6 +29,8 @@ pub struct Neighbourhoods {
     /// Where they were when it was begun (m).
     before: Vec<DVec3>,
     motions: Vec<Motion>,
+    /// The farthest that nodes may move anywhere (m).
+    widest: f64,
 }
 
 /// How far any two nodes of a neighbourhood have moved against each other when it was looked at, and how far they may
@@ -38,7 +44,8 @@ struct Motion {
 impl Neighbourhoods {
     /// Of the points in lists, not begun yet.
     pub fn list(&mut self, surfaces: &Surfaces, points: &[Point], lists: &Lists) {
-        let Self { starts, nodes, before, motions } = self;
+        let Self { starts, nodes, before, motions, widest } = self;
+        *widest = 0.0;
         starts.clear();
         starts.push(0);
         nodes.clear();
@@ -70,28 +77,35 @@ impl Neighbourhoods {
 
     /// Bytes that they take.
     pub fn bytes(&self) -> usize {
-        let Self { starts, nodes, before, motions } = self;
+        let Self { starts, nodes, before, motions, .. } = self;
         size_of_val(&starts[..]) + size_of_val(&nodes[..]) + size_of_val(&before[..]) + size_of_val(&motions[..])
     }
 
-    /// Looks at all of them, with nodes where they are (m). Those of which little is left begin anew, and nodes may move
-    /// so far there (m) from then on: `renew` is told of which places in the lists these are. Gives how far any two nodes
+    /// Whether nodes may move somewhere much farther than they need to (m).
+    pub fn is_too_wide(&self, allowed: f64) -> bool {
+        self.widest > WIDE * allowed
+    }
+
+    /// Looks at all of them, with nodes where they are (m). Those of which little is left, and those that are too
+    /// wide, begin anew, and nodes may move so far there (m) from then on: `renew` is told of which places in the lists these are. Gives how far any two nodes
     /// may move until it has to be looked again (m).
     pub fn follow(&mut self, places: &[DVec3], allowed: f64, mut renew: impl FnMut(Range<usize>)) -> f64 {
-        let Self { starts, nodes, before, motions } = self;
+        let Self { starts, nodes, before, motions, widest } = self;
         let mut left = f64::INFINITY;
+        *widest = 0.0;
         for (number, motion) in motions.iter_mut().enumerate() {
             let range = starts[number] as usize..starts[number + 1] as usize;
             let (nodes, before) = (&nodes[range.clone()], &mut before[range]);
             motion.moved = apart(places, nodes, before);
             // of what is no number nothing is left
             let may_move = motion.allowed - motion.moved > LEFT * motion.allowed;
-            if !may_move {
+            if !may_move || motion.allowed > WIDE * allowed {
                 *motion = Motion { moved: 0.0, allowed };
                 nodes.iter().zip(before).for_each(|(&node, before)| *before = places[node as usize]);
                 renew(POINTS * number..POINTS * (number + 1));
             }
             left = left.min(motion.allowed - motion.moved);
+            *widest = widest.max(motion.allowed);
         }
         left
     }

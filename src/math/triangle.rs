@@ -117,11 +117,7 @@ impl<R: Real> Nearest<R> {
         let all = off_ab + off_bc + off_ca;
         let (v, w) = (off_ca / all, off_ab / all);
         let inside = plus(plus(a, times(ab, v)), times(ac, w));
-        let across = [
-            ab[1] * ac[2] - ac[1] * ab[2],
-            ab[2] * ac[0] - ac[2] * ab[0],
-            ab[0] * ac[1] - ac[0] * ab[1],
-        ];
+        let across = [ab[1] * ac[2] - ac[1] * ab[2], ab[2] * ac[0] - ac[2] * ab[0], ab[0] * ac[1] - ac[0] * ab[1]];
         let normal = times(across, one / dot(across, across).sqrt());
         let weights = [one - v - w, v, w];
         let mut found = Self { at: inside, weights, part: zero, distance: zero, normal, gap: zero };

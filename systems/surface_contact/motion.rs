@@ -30,8 +30,14 @@ impl SurfaceContacts {
 
     /// Whether shortlists hold where faces are looked at so far (m).
     pub(super) fn shortlists_hold(&self, reach: f64) -> bool {
-        let Surface { shortlists, stays, motion, .. } = &self.surface;
-        !shortlists.is_empty() && reach <= stays.reach && motion.shortlists.moved <= stays.moved
+        let Surface { shortlists, neighbourhoods, stays, motion, .. } = &self.surface;
+        let is_known = !shortlists.is_empty() && !neighbourhoods.is_too_wide(self.may_move());
+        is_known && reach <= stays.reach && motion.shortlists.moved <= stays.moved
+    }
+
+    /// How far nodes may move before shortlists are begun anew (m).
+    fn may_move(&self) -> f64 {
+        (STEPS_OF_SHORTLISTS * self.surface.motion.largest).clamp(STAYS[0] * self.edge, STAYS[1] * self.edge)
     }
 }
 
@@ -43,10 +49,7 @@ fn place<T: Scalar>(contacts: &SurfaceContacts, bodies: &[BodySlices<'_, T>], no
 }
 
 /// Some ascending numbers a task, with the values of these and of those between, and the number of the first value.
-fn tasks<'a, T>(
-    numbers: &'a [u32],
-    mut left: &'a mut [T],
-) -> impl Iterator<Item = (&'a [u32], usize, &'a mut [T])> {
+fn tasks<'a, T>(numbers: &'a [u32], mut left: &'a mut [T]) -> impl Iterator<Item = (&'a [u32], usize, &'a mut [T])> {
     let mut first = 0;
     numbers.chunks(NUMBERS_A_TASK).map(move |numbers| {
         let end = numbers.last().map_or(first, |&last| last as usize + 1);
@@ -93,7 +96,7 @@ pub(super) fn list<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlic
 /// steps of the fastest will take them; and all for new lists, and where faces are looked at farther than up to now, as
 /// far as twice `reach` (m).
 pub(super) fn renew_shortlists<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], reach: f64) {
-    let edge = contacts.edge;
+    let may_move = contacts.may_move();
     let Surface { triangles, points, places, lists, neighbourhoods, motion, shortlists, stays, .. } =
         &mut contacts.surface;
     motion.mark_shortlists(bodies);
@@ -103,8 +106,7 @@ pub(super) fn renew_shortlists<T: Scalar>(contacts: &mut SurfaceContacts, bodies
         shortlists.resize(lists.points.len(), Shortlist::UNKNOWN);
         stays.reach = 2.0 * reach;
     }
-    let moved = (STEPS_OF_SHORTLISTS * motion.largest).clamp(STAYS[0] * edge, STAYS[1] * edge);
-    stays.moved = neighbourhoods.follow(places, moved, |places| {
+    stays.moved = neighbourhoods.follow(places, may_move, |places| {
         shortlists.iter_mut().take(places.end).skip(places.start).for_each(|short| *short = Shortlist::UNKNOWN);
     });
 }

@@ -43,10 +43,15 @@ fn what_moves_together_or_elsewhere_changes_nothing() {
     places[2 * POINTS + POINTS / 2].z += 0.02;
     let (renewed, left) = follow(&mut all, &places);
     assert!(renewed == [2 * POINTS] && left > 0.0999, "{renewed:?}, {left}");
+    // all are too wide where nodes hardly move any more
+    assert!(!all.is_too_wide(0.1 / WIDE) && all.is_too_wide(0.09 / WIDE));
+    let mut renewed = 0;
+    assert_eq!(all.follow(&places, 0.01, |_| renewed += 1), 0.01);
+    assert_eq!((renewed, all.is_too_wide(0.01)), (NODES.div_ceil(POINTS as u32), false));
     // a node that is no number is not where it was
     places[0] = DVec3::NAN;
     places[1] = DVec3::NAN;
-    assert!(follow(&mut all, &places).1 <= 0.1);
+    assert!(all.follow(&places, 0.01, |_| ()) <= 0.01);
 }
 
 /// As long as nodes move no farther than is left, none has moved farther in a neighbourhood than is allowed since that
