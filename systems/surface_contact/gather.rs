@@ -18,7 +18,7 @@ pub(super) const OUT: f64 = 0.1;
 const SHARES: f64 = 1e-3;
 
 /// Nodes that a task foresees.
-const NODES_A_TASK: usize = 512;
+const NODES_A_TASK: usize = 1024;
 
 /// A contact of the set.
 #[derive(Clone, Copy, Debug)]
