@@ -85,30 +85,33 @@ impl Surfaces {
         (faced, own): (&mut Faced, &mut Own),
     ) -> bool {
         let Some(triangles) = short.triangles() else { return false };
-        (faced.first, faced.second, faced.wakes) = (None, None, short.wakes);
-        let mut only = None;
+        let (mut only, mut wakes) = (None, short.wakes);
         for (number, &triangle) in triangles.iter().enumerate() {
-            let distance = pairs.distance(first + number);
-            faced.wakes = faced.wakes.min(distance - nearer);
+            let (distance, part) = pairs.distance(first + number);
+            wakes = if distance - nearer < wakes { distance - nearer } else { wakes };
             let within = [self.depths[triangle as usize], reach(triangle)];
             if distance > within[0] && distance > within[1] {
                 continue;
             }
-            let part = pairs.part(first + number);
-            let is_before = part == 0 || distance <= ON_IT * edge;
-            if !is_before && self.is_beside(triangles, (pairs, first), (number, part)) {
+            if part != 0.0 && distance > ON_IT * edge {
+                let part = part as usize;
+                let is_beside = self.is_beside(triangles, (pairs, first), (number, part))
+                    || self.goes_on_nearer((now.places, pairs.place(first)), (triangle, part), NEARER * distance);
+                if !is_beside {
+                    return false;
+                }
                 continue;
             }
-            if only.is_some() || !is_before {
+            if only.is_some() {
                 return false;
             }
             only = Some((number, within));
         }
+        (faced.first, faced.second, faced.wakes) = (None, None, wakes);
         let Some((number, [depth, reach])) = only else { return true };
         let (found, normal, gap) = pairs.nearest(first + number);
-        // what has no area has no direction either
-        let is_there = normal != DVec3::ZERO && normal.is_finite() && found.at.is_finite();
-        if !(is_there && gap >= -depth && gap <= reach) {
+        // what has no area is no number away along its normal
+        if !(gap >= -depth && gap <= reach) || normal == DVec3::ZERO {
             return true;
         }
         let is_turned_away = match point.triangle {
@@ -127,10 +130,22 @@ impl Surfaces {
     /// nearer.
     #[inline]
     fn is_beside(&self, triangles: &[u32], (pairs, first): (&Pairs, usize), (number, part): (usize, usize)) -> bool {
-        let (triangle, farthest) = (triangles[number], NEARER * pairs.distance(first + number));
+        let (triangle, farthest) = (triangles[number], NEARER * pairs.distance(first + number).0);
         triangles.iter().enumerate().any(|(place, &other)| {
-            place != number && pairs.distance(first + place) < farthest && self.shares_part(other, triangle, part)
+            place != number && pairs.distance(first + place).0 < farthest && self.shares_part(other, triangle, part)
         })
+    }
+
+    /// Whether any triangle that shares a part of one is nearer to a place than a distance (m): those that do are not all
+    /// in shortlists.
+    fn goes_on_nearer(
+        &self,
+        (places, at): (&[DVec3], DVec3),
+        (triangle, part): (u32, usize),
+        distance: f64,
+    ) -> bool {
+        let mut others = self.around_part(triangle, part).filter(|&other| other != triangle);
+        others.any(|other| at.distance(OnTriangle::nearest(at, self.corners(places, other)).at) < distance)
     }
 
     /// What a point faces among the triangles of its list that are no farther than `reach` (m), and which of them matter
@@ -169,17 +184,11 @@ impl Surfaces {
             }
             None => {
                 candidates.find_listed();
-                for (place, &triangle) in listed.triangles.iter().enumerate() {
-                    if !listed.is_far(place) {
-                        look(&candidates, place, triangle);
-                    }
-                }
                 let away = |place: usize| candidates.stays_away(place, reach(listed.triangles[place]), stays);
                 let nearest = |place: usize| match listed.is_far(place) {
                     true => listed.distances[place],
                     false => candidates.nearest(place).1 - listed.nearer,
                 };
-                wakes = (0..listed.triangles.len()).map(nearest).fold(wakes, f64::min);
                 around.clear();
                 if point.triangle.is_none() {
                     let of = |&own: &u32| (self.normal_now(now, own), self.turns(now, own, stays.moved));
@@ -192,6 +201,13 @@ impl Surfaces {
                     point.triangle.is_none() && around.iter().all(stays_so)
                 };
                 *short = Shortlist::of(listed.triangles, away, nearest, turned);
+                // what stays away is in nobody's way now
+                for (place, triangle) in listed.triangles.iter().enumerate() {
+                    if !listed.is_far(place) && short.triangles().is_none_or(|left| left.contains(triangle)) {
+                        look(&candidates, place, *triangle);
+                    }
+                }
+                wakes = (0..listed.triangles.len()).map(nearest).fold(wakes, f64::min);
             }
         }
         let [first, second] = way.finish();

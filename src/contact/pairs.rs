@@ -47,28 +47,31 @@ impl Pairs {
         if block == self.blocks.len() {
             self.blocks.push(Block::default());
         }
-        let places = &mut self.blocks[block].places;
-        for (of, at) in places.iter_mut().zip([place, a, b, c]) {
-            (of[0].0[lane], of[1].0[lane], of[2].0[lane]) = (at.x, at.y, at.z);
-        }
+        let [of_place, of_a, of_b, of_c] = &mut self.blocks[block].places;
+        put(of_place, lane, place);
+        put(of_a, lane, a);
+        put(of_b, lane, b);
+        put(of_c, lane, c);
         self.count += 1;
     }
 
     /// Finds where all are nearest.
     pub fn find(&mut self, cpu: &Cpu) {
-        cpu.dispatch(Find { blocks: &mut self.blocks[..self.count.div_ceil(SIDE_BY_SIDE)] });
+        cpu.dispatch_widest(Find { blocks: &mut self.blocks[..self.count.div_ceil(SIDE_BY_SIDE)] });
     }
 
-    /// How far a point is from its triangle (m).
+    /// Where the point is (m).
     #[inline]
-    pub(super) fn distance(&self, pair: usize) -> f64 {
-        self.blocks[pair / SIDE_BY_SIDE].distance.0[pair % SIDE_BY_SIDE]
+    pub(super) fn place(&self, pair: usize) -> DVec3 {
+        let ([x, y, z], lane) = (&self.blocks[pair / SIDE_BY_SIDE].places[0], pair % SIDE_BY_SIDE);
+        DVec3::new(x.0[lane], y.0[lane], z.0[lane])
     }
 
-    /// The part of its triangle on which it is nearest.
+    /// How far a point is from its triangle (m), and the part on which it is nearest.
     #[inline]
-    pub(super) fn part(&self, pair: usize) -> usize {
-        self.blocks[pair / SIDE_BY_SIDE].part.0[pair % SIDE_BY_SIDE] as usize
+    pub(super) fn distance(&self, pair: usize) -> (f64, f64) {
+        let (block, lane) = (&self.blocks[pair / SIDE_BY_SIDE], pair % SIDE_BY_SIDE);
+        (block.distance.0[lane], block.part.0[lane])
     }
 
     /// Where its triangle is nearest, the unit normal of that (no number of one without area), and how far the point is
@@ -80,6 +83,11 @@ impl Pairs {
         let (at, weights, part) = (vector(&block.at).into(), vector(&block.weights), block.part.0[lane] as usize);
         (OnTriangle { at, weights, part }, vector(&block.normal).into(), block.gap.0[lane])
     }
+}
+
+#[inline]
+fn put([x, y, z]: &mut [Numbers; 3], lane: usize, at: DVec3) {
+    (x.0[lane], y.0[lane], z.0[lane]) = (at.x, at.y, at.z);
 }
 
 /// The task of finding where pairs are nearest.

@@ -55,21 +55,25 @@ impl Shortlist {
     }
 
     /// Whether it is known.
+    #[inline]
     pub fn is_known(&self) -> bool {
         self.count != NONE
     }
 
     /// How many they are; none where they are not known.
+    #[inline]
     pub fn count(&self) -> usize {
         self.triangles().map_or(0, <[u32]>::len)
     }
 
     /// The triangles, if they are known.
+    #[inline]
     pub(super) fn triangles(&self) -> Option<&[u32]> {
         self.triangles.get(..usize::from(self.count))
     }
 
     /// Whether the one of that number stays turned away from all around the point, a node.
+    #[inline]
     pub(super) fn is_turned_away(&self, number: usize) -> bool {
         self.turned >> number & 1 == 1
     }

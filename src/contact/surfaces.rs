@@ -62,12 +62,14 @@ impl Point {
     }
 
     /// Its nodes and their weights.
+    #[inline]
     pub fn slices(&self) -> (&[u32], &[f64]) {
         let count = if self.triangle.is_some() { 4 } else { 1 };
         (&self.nodes[..count], &self.weights[..count])
     }
 
     /// Its nodes with their weights.
+    #[inline]
     pub fn parts(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
         let (nodes, weights) = self.slices();
         nodes.iter().copied().zip(weights.iter().copied())
@@ -76,6 +78,9 @@ impl Point {
     /// Where it is (m).
     #[inline]
     pub fn place(&self, places: &[DVec3]) -> DVec3 {
+        if self.triangle.is_none() {
+            return places[self.nodes[0] as usize];
+        }
         self.parts().map(|(node, weight)| places[node as usize] * weight).sum()
     }
 }
@@ -128,6 +133,7 @@ impl Surfaces {
     }
 
     /// The unit normal of a triangle; zero of one without area.
+    #[inline]
     pub fn normal(&self, places: &[DVec3], triangle: u32) -> DVec3 {
         let [a, b, c] = self.corners(places, triangle);
         (b - a).cross(c - a).normalize_or_zero()

@@ -110,44 +110,47 @@ impl<R: Real> Nearest<R> {
     #[inline(always)]
     pub fn of(y: [R; 3], [a, b, c]: [[R; 3]; 3]) -> Self {
         let [zero, one] = [y[0].constant(0.0), y[0].constant(1.0)];
-        let (ab, ac, bc) = (minus(b, a), minus(c, a), minus(c, b));
+        let (ab, ac) = (minus(b, a), minus(c, a));
         let (ay, by, cy) = (minus(y, a), minus(y, b), minus(y, c));
         let (d1, d2, d3, d4, d5, d6) = (dot(ab, ay), dot(ac, ay), dot(ab, by), dot(ac, by), dot(ab, cy), dot(ac, cy));
         let (off_ab, off_ca, off_bc) = (d1 * d4 - d3 * d2, d5 * d2 - d1 * d6, d3 * d6 - d5 * d4);
         let all = off_ab + off_bc + off_ca;
-        let (v, w) = (off_ca / all, off_ab / all);
-        let inside = plus(plus(a, times(ab, v)), times(ac, w));
-        let across = [ab[1] * ac[2] - ac[1] * ab[2], ab[2] * ac[0] - ac[2] * ab[0], ab[0] * ac[1] - ac[0] * ab[1]];
-        let normal = times(across, one / dot(across, across).sqrt());
-        let weights = [one - v - w, v, w];
-        let mut found = Self { at: inside, weights, part: zero, distance: zero, normal, gap: zero };
-        // from the last region to the first
-        let t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        let is = at_most_zero(off_bc, at_least_zero(d4 - d3, at_least_zero(d5 - d6, one)));
-        found.take(is, plus(b, times(bc, t)), [zero, one - t, t], 2.0);
-        let t = d2 / (d2 - d6);
-        let is = at_most_zero(off_ca, at_least_zero(d2, at_most_zero(d6, one)));
-        found.take(is, plus(a, times(ac, t)), [one - t, zero, t], 3.0);
-        let t = d1 / (d1 - d3);
-        let is = at_most_zero(off_ab, at_least_zero(d1, at_most_zero(d3, one)));
-        found.take(is, plus(a, times(ab, t)), [one - t, t, zero], 1.0);
-        found.take(at_least_zero(d6, at_least_zero(d6 - d5, one)), c, [zero, zero, one], 6.0);
-        found.take(at_least_zero(d3, at_least_zero(d3 - d4, one)), b, [zero, one, zero], 5.0);
-        found.take(at_most_zero(d1, at_most_zero(d2, one)), a, [one, zero, zero], 4.0);
-        let off = minus(y, found.at);
-        (found.distance, found.gap) = (dot(off, off).sqrt(), dot(off, normal));
-        found
-    }
-
-    /// Takes what is nearest in a region, where `is` is above 0.
-    #[inline(always)]
-    fn take(&mut self, is: R, at: [R; 3], weights: [R; 3], part: f64) {
-        self.part = is.if_positive(is.constant(part), self.part);
+        // what b and c have of it, from the last region to the first
+        let (mut v, mut w, mut part) = (off_ca / all, off_ab / all, zero);
+        let along_bc = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        let on_bc = at_most_zero(off_bc, at_least_zero(d4 - d3, at_least_zero(d5 - d6, one)));
+        take(on_bc, [one - along_bc, along_bc], 2.0, (&mut v, &mut w, &mut part));
+        let on_ca = at_most_zero(off_ca, at_least_zero(d2, at_most_zero(d6, one)));
+        take(on_ca, [zero, d2 / (d2 - d6)], 3.0, (&mut v, &mut w, &mut part));
+        let on_ab = at_most_zero(off_ab, at_least_zero(d1, at_most_zero(d3, one)));
+        take(on_ab, [d1 / (d1 - d3), zero], 1.0, (&mut v, &mut w, &mut part));
+        take(at_least_zero(d6, at_least_zero(d6 - d5, one)), [zero, one], 6.0, (&mut v, &mut w, &mut part));
+        take(at_least_zero(d3, at_least_zero(d3 - d4, one)), [one, zero], 5.0, (&mut v, &mut w, &mut part));
+        take(at_most_zero(d1, at_most_zero(d2, one)), [zero, zero], 4.0, (&mut v, &mut w, &mut part));
+        // beside a, what a has is found from the others
+        let (mut u, mut at) = (one - v - w, plus(plus(a, times(ab, v)), times(ac, w)));
+        let is_on_bc = at_most_zero((part - one - one).abs(), one);
+        u = is_on_bc.if_positive(zero, u);
+        let bc = plus(b, times(minus(c, b), w));
         for axis in 0..3 {
-            self.at[axis] = is.if_positive(at[axis], self.at[axis]);
-            self.weights[axis] = is.if_positive(weights[axis], self.weights[axis]);
+            at[axis] = is_on_bc.if_positive(bc[axis], at[axis]);
+            at[axis] = (part - part.constant(4.5)).if_positive(b[axis], at[axis]);
+            at[axis] = (part - part.constant(5.5)).if_positive(c[axis], at[axis]);
         }
+        let across =
+            [ab[1] * ac[2] - ac[1] * ab[2], ab[2] * ac[0] - ac[2] * ab[0], ab[0] * ac[1] - ac[0] * ab[1]];
+        let normal = times(across, one / dot(across, across).sqrt());
+        let off = minus(y, at);
+        Self { at, weights: [u, v, w], part, distance: dot(off, off).sqrt(), normal, gap: dot(off, normal) }
     }
+}
+
+/// Takes what b and c have of the nearest place in a region, where `is` is above 0.
+#[inline(always)]
+fn take<R: Real>(is: R, [of_b, of_c]: [R; 2], number: f64, (v, w, part): (&mut R, &mut R, &mut R)) {
+    *v = is.if_positive(of_b, *v);
+    *w = is.if_positive(of_c, *w);
+    *part = is.if_positive(is.constant(number), *part);
 }
 
 /// `then` where a number is 0 or less, else 0.
