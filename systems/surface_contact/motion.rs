@@ -14,7 +14,7 @@ const NUMBERS_A_TASK: usize = 1024;
 
 /// How far nodes may move before shortlists are begun anew, in edges: at least and at most; and for how many steps of
 /// the fastest node, between these.
-const STAYS: [f64; 2] = [2e-3, 5e-2];
+const STAYS: [f64; 2] = [2e-3, 3e-2];
 const STEPS_OF_SHORTLISTS: f64 = 40.0;
 
 /// How far faces must be looked at when the fastest node goes so far in a step (m).
