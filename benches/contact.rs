@@ -205,7 +205,7 @@ fn main() {
     if asked("turns") {
         for (cells, threads) in [(12, 1), (12, 2), (24, 1), (24, 2)] {
             if [12, 24].iter().all(|only| *only == cells || !asked(&only.to_string())) {
-                [nodes, faces].map(|points| shares(points, cells, threads, 0.0));
+                [nodes, faces].into_iter().for_each(|points| shares(points, cells, threads, 0.0));
             }
         }
         return;

@@ -136,20 +136,16 @@ impl Surfaces {
         })
     }
 
-    /// Whether any triangle that shares a part of one is nearer to a place than a distance (m): those that do are not all
-    /// in shortlists.
-    fn goes_on_nearer(
-        &self,
-        (places, at): (&[DVec3], DVec3),
-        (triangle, part): (u32, usize),
-        distance: f64,
-    ) -> bool {
+    /// Whether any triangle that shares a part of one is nearer to a place than a distance (m): those that do are not
+    /// all in shortlists.
+    fn goes_on_nearer(&self, (places, at): (&[DVec3], DVec3), (triangle, part): (u32, usize), distance: f64) -> bool {
         let mut others = self.around_part(triangle, part).filter(|&other| other != triangle);
         others.any(|other| at.distance(OnTriangle::nearest(at, self.corners(places, other)).at) < distance)
     }
 
-    /// What a point faces among the triangles of its list that are no farther than `reach` (m), and which of them matter
-    /// as long as nodes move no farther than a shortlist allows for; where that is known, the others are not looked at.
+    /// What a point faces among the triangles of its list that are no farther than `reach` (m), and which of them
+    /// matter as long as nodes move no farther than a shortlist allows for; where that is known, the others are not
+    /// looked at.
     /// `edge` is the length of an edge (m).
     #[inline(never)] // all points would make room for what few need
     pub fn faced(
@@ -226,8 +222,8 @@ impl Surfaces {
         first.normal.dot(second.normal) < CORNER && rises()
     }
 
-    /// By how much the unit normal of a triangle with sides a, b and area A changes at most, as long as no two nodes move
-    /// against each other by more than a distance m: 2 m (a + b + m)/2A.
+    /// By how much the unit normal of a triangle with sides a, b and area A changes at most, as long as no two nodes
+    /// move against each other by more than a distance m: 2 m (a + b + m)/2A.
     fn turns(&self, now: Placed<'_>, triangle: u32, moved: f64) -> f64 {
         let [a, b, c] = self.corners(now.places, triangle);
         let (one, other) = (b - a, c - a);

@@ -116,7 +116,8 @@ impl Contact {
         change
     }
 
-    /// Notes where the point goes, what its force does, and how far it has slipped elastically, now that forces are known.
+    /// Notes where the point goes, what its force does, and how far it has slipped elastically, now that forces are
+    /// known.
     #[inline(always)]
     fn note(&mut self, steps: &[DVec4], earlier: &[DVec4]) {
         if self.pressing <= 0.0 {

@@ -12,8 +12,8 @@ const POINTS: usize = 64;
 /// A neighbourhood begins anew when it is looked at and less than this is left of how far it may move.
 const LEFT: f64 = 0.25;
 
-/// One also begins anew that may move so many times as far as is asked for: the farther nodes may move, the more is in a
-/// point's way.
+/// One also begins anew that may move so many times as far as is asked for: the farther nodes may move, the more is in
+/// a point's way.
 const WIDE: f64 = 8.0;
 
 /// What rounding takes of a difference at most, and more.
@@ -86,9 +86,9 @@ impl Neighbourhoods {
         self.widest > WIDE * allowed
     }
 
-    /// Looks at all of them, with nodes where they are (m). Those of which little is left, and those that are too
-    /// wide, begin anew, and nodes may move so far there (m) from then on: `renew` is told of which places in the lists these are. Gives how far any two nodes
-    /// may move until it has to be looked again (m).
+    /// Looks at all of them, with nodes where they are (m). Those of which little is left, and those that are too wide,
+    /// begin anew, and nodes may move so far there (m) from then on: `renew` is told of which places in the lists these
+    /// are. Gives how far any two nodes may move until it has to be looked again (m).
     pub fn follow(&mut self, places: &[DVec3], allowed: f64, mut renew: impl FnMut(Range<usize>)) -> f64 {
         let Self { starts, nodes, before, motions, widest } = self;
         let mut left = f64::INFINITY;

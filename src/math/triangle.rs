@@ -59,10 +59,10 @@ impl OnTriangle {
     }
 
     /// Whether the nearest place to `y` stays on the same side or corner, as long as no two of the corners and `y` move
-    /// against each other by more than a distance m. Products of vectors from a corner change by no more than the sum of
-    /// what one of them alone does to them, with lengths that are as large as they may become. Along a side of length e,
-    /// with P what is across it, P changes by s = m/e at most (the sine of the angle that the side turns by), and so o ·
-    /// P w by m (|P o| + |P w| + s (|o| + |w|) + m) + s |o| |w|.
+    /// against each other by more than a distance m. Products of vectors from a corner change by no more than the sum
+    /// of what one of them alone does to them, with lengths that are as large as they may become. What is across a side
+    /// of length e, P, changes by s = m/e at most, the sine of the angle that the side turns by, and so o · P w by m (|P
+    /// o| + |P w| + s (|o| + |w|) + m) + s |o| |w|.
     pub fn keeps_part(&self, y: DVec3, corners: [DVec3; 3], moved: f64) -> bool {
         if self.part == 0 {
             return false;
@@ -137,8 +137,7 @@ impl<R: Real> Nearest<R> {
             at[axis] = (part - part.constant(4.5)).if_positive(b[axis], at[axis]);
             at[axis] = (part - part.constant(5.5)).if_positive(c[axis], at[axis]);
         }
-        let across =
-            [ab[1] * ac[2] - ac[1] * ab[2], ab[2] * ac[0] - ac[2] * ab[0], ab[0] * ac[1] - ac[0] * ab[1]];
+        let across = [ab[1] * ac[2] - ac[1] * ab[2], ab[2] * ac[0] - ac[2] * ab[0], ab[0] * ac[1] - ac[0] * ab[1]];
         let normal = times(across, one / dot(across, across).sqrt());
         let off = minus(y, at);
         Self { at, weights: [u, v, w], part, distance: dot(off, off).sqrt(), normal, gap: dot(off, normal) }

@@ -73,7 +73,9 @@ impl Gathered {
     ) {
         let near = &surface.near.nodes;
         let ContactSet { steps, earlier, responses, .. } = &mut self.set;
-        [&mut *steps, &mut *earlier, &mut *responses].map(|all| all.resize(near.len(), DVec4::ZERO));
+        for all in [&mut *steps, &mut *earlier, &mut *responses] {
+            all.resize(near.len(), DVec4::ZERO);
+        }
         let of_steps = steps.chunks_mut(NODES_A_TASK).zip(earlier.chunks_mut(NODES_A_TASK));
         let tasks = near.chunks(NODES_A_TASK).zip(of_steps.zip(responses.chunks_mut(NODES_A_TASK)));
         cpu.for_each(tasks, |(nodes, ((steps, earlier), responses))| {

@@ -4,7 +4,7 @@ use super::body_slices::{BodySlices, vector};
 use super::survey::MARGIN;
 use super::{Surface, SurfaceContacts, crossings};
 use crate::backend::cpu::Cpu;
-use crate::contact::{Finder, Lists, Point, Shortlist, Stays};
+use crate::contact::{Finder, Lists, Point, Shortlist};
 use crate::math::Scalar;
 use glam::DVec3;
 use web_time::Instant;

@@ -194,8 +194,8 @@ pub(super) fn press<T: Scalar>(
     (contacts.surface.gathered, contacts.surface.pairs, contacts.surface.solved) = (gathered, pairs, solved);
 }
 
-/// Adds the contact of a pair with such a gap (m), with its force, of springs in steps of such a time (s). The mass that
-/// a spring presses on is that of the point.
+/// Adds the contact of a pair with such a gap (m), with its force, of springs in steps of such a time (s). The mass
+/// that a spring presses on is that of the point.
 fn add<T: Scalar>(
     contacts: &SurfaceContacts,
     gathered: &mut Gathered,
