@@ -81,7 +81,12 @@ impl Point {
         if self.triangle.is_none() {
             return places[self.nodes[0] as usize];
         }
-        self.parts().map(|(node, weight)| places[node as usize] * weight).sum()
+        let (nodes, weights) = self.slices();
+        let mut at = DVec3::ZERO;
+        for (&node, &weight) in nodes.iter().zip(weights) {
+            at += places[node as usize] * weight;
+        }
+        at
     }
 }
 

@@ -56,7 +56,10 @@ impl Surface {
     /// quite its triangles, the gap that the step foresees is the one that is found after it, or forces would do work.
     pub(super) fn gap_of_facet(&self, point: &Point, facing: &Facing) -> f64 {
         let (nodes, weights) = self.corners_of(point, facing);
-        let at: DVec3 = nodes.iter().zip(weights).map(|(&node, weight)| self.places[node as usize] * weight).sum();
+        let mut at = DVec3::ZERO;
+        for (&node, weight) in nodes.iter().zip(weights) {
+            at += self.places[node as usize] * weight;
+        }
         facing.normal.dot(point.place(&self.places) - at)
     }
 }
