@@ -52,6 +52,7 @@ pub fn system() -> System {
     );
     System {
         shared_only: surfaces_stay,
+        may_sleep: true,
         // where elements go, surfaces are found anew: on the host
         device_when: surfaces_stay,
         before_steps: Some(device::before_steps),
@@ -140,8 +141,10 @@ struct Surface {
     /// Which way the triangles look that are.
     normals: Vec<DVec3>,
     fresh: Vec<DVec3>,
-    /// How far nodes have moved since the lists were made.
+    /// How far nodes have moved since the lists were made; and how far faces must be looked at in this step (m), where
+    /// that was found before forces.
     motion: look::Motion,
+    reach: Option<f64>,
     /// Of each point in the lists, how far that may be before it has to be looked at again (m), and the least of all.
     wake: Vec<f64>,
     first_wake: f64,
@@ -266,15 +269,20 @@ impl SurfaceContacts {
     }
 }
 
+/// A step, or whether it sleeps through it, where that is asked before.
 fn surface_contact(
     (clock, cpu): (Res<Clock>, Res<Cpu>),
     mut contacts: ResMut<SurfaceContacts>,
+    mut sleep: Option<ResMut<SurfaceSleep>>,
     mut bodies: Query<(Entity, MeetingColumns)>,
     authorings: Query<&Authoring>,
     blocks: Query<Ref<Alive>>,
 ) -> Result<(), Error> {
     let contacts = &mut *contacts;
+    let asked = sleep.as_mut().filter(|sleep| sleep.asked);
     match clock.springs.map(|springs| springs.forces) {
+        // where it has been asked
+        None if contacts.surface.reach.is_some() && asked.is_none() => {}
         None | Some(SpringForces::Sought | SpringForces::Stepped) => {
             survey::follow(contacts, &mut bodies, &authorings, &blocks)
         }
@@ -282,9 +290,19 @@ fn surface_contact(
         Some(SpringForces::Omitted) => return Ok(()),
     }
     let precision = bodies.iter().next().map(|(_, columns)| columns.nodes.u.precision());
+    let of_step = (&*clock, &*cpu);
+    if let Some(sleep) = asked {
+        contacts.surface.reach = match precision.filter(|_| clock.springs.is_none()) {
+            Some(Precision::F32) => motion::awake::<f32>(contacts, of_step, &bodies),
+            Some(Precision::F64) => motion::awake::<f64>(contacts, of_step, &bodies),
+            None => None,
+        };
+        sleep.asleep &= clock.springs.is_none() && contacts.surface.reach.is_none();
+        return Ok(());
+    }
     match precision {
-        Some(Precision::F32) => step::<f32>(contacts, (&clock, &cpu), &mut bodies),
-        Some(Precision::F64) => step::<f64>(contacts, (&clock, &cpu), &mut bodies),
+        Some(Precision::F32) => step::<f32>(contacts, of_step, &mut bodies),
+        Some(Precision::F64) => step::<f64>(contacts, of_step, &mut bodies),
         None => Ok(()),
     }
 }
@@ -297,7 +315,7 @@ fn step<T: Scalar>(
     match &of.0.springs {
         Some(springs) if matches!(springs.forces, SpringForces::Sought | SpringForces::Stepped) => {
             contacts.surface.pairs.clear();
-            let Some((is_near, mut bodies)) = search::<T>(contacts, of, bodies)? else { return Ok(()) };
+            let Some((is_near, mut bodies)) = motion::search::<T>(contacts, of, bodies)? else { return Ok(()) };
             if is_near {
                 solved::pair(contacts, of.0, &mut bodies);
             }
@@ -312,7 +330,7 @@ fn step<T: Scalar>(
             motion::update_places(contacts, &bodies, of.1);
             solved::press(contacts, (of.0, springs), &mut bodies);
         }
-        None => match search::<T>(contacts, of, bodies)? {
+        None => match motion::search::<T>(contacts, of, bodies)? {
             None => {}
             Some((false, mut bodies)) => {
                 meet::release(&mut contacts.surface, &mut bodies);
@@ -333,63 +351,4 @@ fn slices_of<'a, T: Scalar>(
 ) -> Result<Vec<BodySlices<'a, T>>, Error> {
     let bodies = body_slices::slices::<T>(contacts, bodies);
     if bodies.len() == contacts.bodies.len() { Ok(bodies) } else { Err(missing("a column of a body")) }
-}
-
-/// Bodies as slices, and whether anything may be near anything.
-type Searched<'a, T> = (bool, Vec<BodySlices<'a, T>>);
-
-/// Finds what points face; `None` where nothing was near anything in the last step, and nothing can be now.
-fn search<'a, T: Scalar>(
-    contacts: &mut SurfaceContacts,
-    (clock, cpu): (&Clock, &Cpu),
-    bodies: &'a mut Query<(Entity, MeetingColumns)>,
-) -> Result<Option<Searched<'a, T>>, Error> {
-    contacts.surface.figures.steps += 1;
-    let reach = follow::<T>(contacts, (clock, cpu), bodies);
-    if contacts.sleeps(reach) {
-        contacts.surface.figures.asleep += 1;
-        return Ok(None);
-    }
-    let bodies = slices_of::<T>(contacts, bodies)?;
-    if !contacts.lists_hold(reach) {
-        motion::list(contacts, &bodies, reach, cpu);
-    }
-    if !faced::wake(contacts, reach) && contacts.surface.crossings.near.is_empty() {
-        contacts.surface.figures.asleep += 1;
-        return Ok(Some((false, bodies)));
-    }
-    motion::update_places(contacts, &bodies, cpu);
-    if !contacts.shortlists_hold(reach) {
-        motion::begin_shortlists(contacts, &bodies, reach);
-    }
-    faced::face(contacts, reach, cpu);
-    crossings::find(contacts, reach);
-    contacts.surface.figures.examined += contacts.surface.found.len() as u64;
-    Ok(Some((true, bodies)))
-}
-
-/// Follows how nodes move; gives how far faces must be looked at (m). It is looked where nodes are when what their
-/// steps add up to is too much to leave all as it is.
-fn follow<T: Scalar>(
-    contacts: &mut SurfaceContacts,
-    (clock, cpu): (&Clock, &Cpu),
-    bodies: &Query<(Entity, MeetingColumns)>,
-) -> f64 {
-    let mut motion = std::mem::take(&mut contacts.surface.motion);
-    let entities = std::mem::take(&mut contacts.bodies);
-    let moving = |body: u32| {
-        let (_, MeetingColumnsReadOnlyItem { nodes, .. }) = bodies.get(entities[body as usize]).ok()?;
-        Some([nodes.u.slice::<T>(), nodes.step.slice::<T>()])
-    };
-    motion.follow(&moving, clock, cpu);
-    let reach = motion::reach(contacts, motion.largest);
-    contacts.surface.motion = motion;
-    let all_hold = || !contacts.is_idle() && contacts.lists_hold(reach) && contacts.shortlists_hold(reach);
-    if !contacts.sleeps(reach) && !all_hold() {
-        let mut motion = std::mem::take(&mut contacts.surface.motion);
-        motion.look(&moving, cpu);
-        contacts.surface.motion = motion;
-    }
-    contacts.bodies = entities;
-    reach
 }
