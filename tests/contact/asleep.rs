@@ -3,7 +3,7 @@
 
 use crate::bits::{bits, start};
 use crate::configurations::scene_of;
-use sinew::components::{ContactForce, FirstInverted, InternalWork, Patches, Precision};
+use sinew::components::{ContactForce, FirstInverted, InternalWork, Patches, Precision, ToolContacts, ToolTouch};
 use sinew::glam::DVec3;
 use sinew::prelude::*;
 use sinew::systems::{Before, Cpu, ForceSlopes, NodeColumns, NodeSystem, NodesAtRest, SimdScalar, SurfaceContacts};
@@ -210,4 +210,41 @@ fn what_moves_nodes_among_the_loads_is_seen_in_its_step() {
     });
     assert!(ends[1].0, "they do not touch in that step");
     assert!(ends[0] == ends[1]);
+}
+
+/// Nodes of which none is near a tool are left alone together: with the same bits as if each were looked at.
+#[test]
+fn tools_that_come_touch_and_go_do_what_they_do_node_by_node() {
+    let text = "(duration: 0.03, bodies: {\"b\": (mesh: Box(size: (0.03, 0.03, 0.02), cells: (9, 9, 7), elements: Hex8),
+            material: \"m\")},
+        materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))},
+        constraints: [Fixed(on: Set(\"z0\"))], integration: (step: 2e-4),
+        contacts: [Tool(tool: \"ball\", friction: 0.3), Tool(tool: \"plate\", friction: 0.2)],
+        tools: {
+            \"ball\": (shape: Sphere(radius: 0.008), path: [(t: 0, at: (0.01, 0.01, 0.05)), (t: 0.01, at: (0.012, 0.014, 0.0275)),
+                (t: 0.014, at: (0.02, 0.015, 0.0275)), (t: 0.024, at: (0.02, 0.02, 0.05))]),
+            \"plate\": (shape: Plane(), rotation: (0, -90, 0), path: [(t: 0, at: (0.05, 0, 0)), (t: 0.012, at: (0.0297, 0, 0)),
+                (t: 0.024, at: (0.05, 0, 0))])})";
+    for precision in [Precision::F64, Precision::F32] {
+        let mut touched = Vec::new();
+        let ends = [true, false].map(|together| {
+            let mut simulation = start(text, precision, 1);
+            let body = simulation.body("b").unwrap();
+            if !together {
+                simulation.world_mut().get_mut::<ToolContacts>(body).unwrap().boxes.clear();
+            }
+            let mut course = Vec::new();
+            for _ in 0..15 {
+                simulation.advance(10).unwrap();
+                let touch = &simulation.world().get::<ToolTouch>(body).unwrap().0;
+                course.push((0..touch.len()).map(|number| touch.get(number).to_bits()).collect::<Vec<u64>>());
+                touched.push(["ball", "plate"].map(|tool| simulation.tool(tool).unwrap().force.length() > 0.0));
+                course.push(bits(&mut simulation, &["b"]));
+            }
+            course
+        });
+        let of_each = [0, 1].map(|tool| touched.iter().filter(|touched| touched[tool]).count());
+        assert!(of_each.iter().all(|count| *count > 1) && touched[0] == [false; 2] && touched[14] == [false; 2]);
+        assert!(ends[0] == ends[1], "{precision:?}");
+    }
 }
