@@ -271,9 +271,9 @@ impl SurfaceContacts {
 
 /// A step, or whether it sleeps through it, where that is asked before.
 fn surface_contact(
-    (clock, cpu): (Res<Clock>, Res<Cpu>),
+    (clock, cpu, observed): (Res<Clock>, Res<Cpu>, Option<Res<Observed>>),
     mut contacts: ResMut<SurfaceContacts>,
-    mut sleep: Option<ResMut<SurfaceSleep>>,
+    (mut sleep, mut gain): (Option<ResMut<SurfaceSleep>>, Option<ResMut<ContactGain>>),
     mut bodies: Query<(Entity, MeetingColumns)>,
     authorings: Query<&Authoring>,
     blocks: Query<Ref<Alive>>,
@@ -300,9 +300,10 @@ fn surface_contact(
         sleep.asleep &= clock.springs.is_none() && contacts.surface.reach.is_none();
         return Ok(());
     }
+    let gain = gain.as_deref_mut().filter(|_| observed.is_some_and(|observed| observed.0));
     match precision {
-        Some(Precision::F32) => step::<f32>(contacts, of_step, &mut bodies),
-        Some(Precision::F64) => step::<f64>(contacts, of_step, &mut bodies),
+        Some(Precision::F32) => step::<f32>(contacts, of_step, &mut bodies, gain),
+        Some(Precision::F64) => step::<f64>(contacts, of_step, &mut bodies, gain),
         None => Ok(()),
     }
 }
@@ -311,6 +312,7 @@ fn step<T: Scalar>(
     contacts: &mut SurfaceContacts,
     of: (&Clock, &Cpu),
     bodies: &mut Query<(Entity, MeetingColumns)>,
+    gain: Option<&mut ContactGain>,
 ) -> Result<(), Error> {
     match &of.0.springs {
         Some(springs) if matches!(springs.forces, SpringForces::Sought | SpringForces::Stepped) => {
@@ -337,7 +339,7 @@ fn step<T: Scalar>(
                 meet::forget(contacts, &[], &mut bodies);
             }
             Some((true, mut bodies)) => {
-                meet::meet(contacts, of, &mut bodies);
+                meet::meet(contacts, of, &mut bodies, gain);
                 contacts.surface.figures.contacts += contacts.surface.gathered.set.contacts.len() as u64;
             }
         },

@@ -64,6 +64,15 @@ pub struct SurfaceSleep {
     pub asleep: bool,
 }
 
+/// What contact between surfaces gave that its law cannot give, of steps after which somebody looks.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactGain {
+    /// How many these were.
+    pub steps: u64,
+    /// The energy (J): see [`ContactSet::beyond_bound`](crate::contact::ContactSet::beyond_bound).
+    pub energy: f64,
+}
+
 /// Where in [`FaceTouch`] the points of each facet are that the body's elements have. Exists on bodies that may lose
 /// elements: each point keeps its place while others go and are laid bare. A facet between two elements is there once,
 /// since only one side of it can be bare.

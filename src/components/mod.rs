@@ -65,7 +65,8 @@ pub use column_layout::{Increments, Rows, Subject};
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
 #[doc(hidden)]
 pub use contact::{
-    ContactForce, ContactSpring, FacePlaces, FaceTouch, MEETING_NUMBERS, SurfaceRows, SurfaceSleep, SurfaceTouch,
+    ContactForce, ContactGain, ContactSpring, FacePlaces, FaceTouch, MEETING_NUMBERS, SurfaceRows, SurfaceSleep,
+    SurfaceTouch,
 };
 #[doc(hidden)]
 pub use free_tool::{FreeMotion, FreeMotions, FreeTool, FreeTools, FreeTouch, MetBody};

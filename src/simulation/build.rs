@@ -127,6 +127,7 @@ impl Simulation {
         world.insert_resource(keeping);
         world.insert_resource(GuardMemory::default());
         world.insert_resource(SurfaceSleep::default());
+        world.insert_resource(ContactGain::default());
         if world.resource::<Clock>().relaxation.is_none() {
             crate::observation::begin_to_guard(&mut world)?;
         }

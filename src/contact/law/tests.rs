@@ -78,6 +78,7 @@ fn momentum_stays_and_energy_is_below_its_bound() {
                 })
                 .sum();
             assert!(later <= earlier + most + 1e-12 * earlier, "{later} of {earlier} and {most} J");
+            assert_eq!(set.beyond_bound(&before), 0.0);
         }
         // what is lost is what the forces took
         let took: f64 = set
@@ -90,6 +91,33 @@ fn momentum_stays_and_energy_is_below_its_bound() {
             assert!(contact.pressing >= 0.0 && contact.rubbing.length() <= friction * contact.pressing * (1.0 + 1e-12));
         }
     }
+}
+
+/// What has slipped elastically comes back at most; a law that pushes three times as hard gives more than it can.
+#[test]
+fn energy_beyond_the_bound_is_found() {
+    let mut random = Rng::with_seed(34);
+    let mut found = 0;
+    for _ in 0..1000 {
+        let (mut set, _) = random_set(&mut random, 0.5, 0.05);
+        for contact in &mut set.contacts {
+            contact.slip = 0.3 * vector(&mut random);
+        }
+        let before = set.clone();
+        set.solve(1, &one());
+        assert_eq!(set.beyond_bound(&before), 0.0);
+        for contact in &mut set.contacts {
+            (contact.pressing, contact.rubbing) = (3.0 * contact.pressing, 3.0 * contact.rubbing);
+        }
+        for (step, predicted) in set.steps.iter_mut().zip(&before.steps) {
+            *step = *predicted + 3.0 * (*step - *predicted);
+        }
+        found += usize::from(set.beyond_bound(&before) > 0.0);
+        set.steps[0].x = f64::NAN;
+        let has_first = set.contacts.iter().any(|of| of.pressing > 0.0 && of.parts().any(|(node, _)| node == 0));
+        assert_eq!(set.beyond_bound(&before).is_nan(), has_first);
+    }
+    assert!(found > 500, "{found} of 1000");
 }
 
 /// The largest eigenvalue of D⁻¹ A is at most 1: by the power method.
