@@ -273,7 +273,7 @@ fn move_others<T: OfRun>(
 ) {
     let non_finite = AtomicU32::new(u32::MAX);
     let mut columns = body.columns::<T>(force.map_or(&[], |force| force.slice()), &non_finite, undeclared);
-    let deferred = moved.map_or(&[][..], |moved| &moved.deferred);
+    let deferred = moved.map_or(&[][..], |moved| &moved.deferred[..]);
     let deferred = arena.alloc_slice_fill_iter(deferred.iter().map(|rows| {
         columns.take(rows.start - columns.first);
         columns.take(rows.len())

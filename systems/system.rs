@@ -9,7 +9,7 @@ use crate::backend::Buffers;
 use crate::backend::kernel::Fragment;
 use crate::backend::kernel::Kernel;
 use crate::backend::node_stage::{DescribeStages, NodeStage, node_kernels};
-use crate::components::{Body, HeldEnergy, LoadedRows, OfBody, SurfaceRows, SurfaceSleep};
+use crate::components::{Body, HeldEnergy, LoadedRows, OfBody};
 use crate::error::{Error, missing};
 use crate::snapshot::StateAccess;
 use bevy_ecs::prelude::*;
@@ -131,9 +131,10 @@ pub struct System {
     pub(crate) device_when: fn(&World) -> bool,
     /// What must be done on the host before steps are submitted to a GPU, and how many there may be at most.
     pub(crate) before_steps: Option<BeforeSteps>,
-    /// Whether, in a world, it concerns only nodes of surfaces ([`SurfaceRows`]).
+    /// Whether, in a world, it concerns only nodes of surfaces ([`SurfaceRows`](crate::components::SurfaceRows)).
     pub(crate) shared_only: fn(&World) -> bool,
-    /// Whether it says before any force is known if it does something in a step ([`SurfaceSleep`]), by where nodes are.
+    /// Whether it says before any force is known, by where nodes are, if it does something in a step
+    /// ([`SurfaceSleep`](crate::components::SurfaceSleep)).
     pub(crate) may_sleep: bool,
     /// What of it a step repeats, in a world: on a GPU the kernels that say so.
     pub(crate) repeats: fn(&World) -> Option<Repeat>,

@@ -329,11 +329,10 @@ impl Simulation {
 /// Asks passes whether they do something in this step, before any force is known.
 fn all_sleep(passes: &mut [ScheduledPass], step: u64, world: &mut World) -> Result<bool, Error> {
     world.insert_resource(SurfaceSleep { asked: true, asleep: true });
-    for pass in &mut *passes {
-        pass.run_on_host(step, world)?;
-    }
+    let answered = passes.iter_mut().try_for_each(|pass| pass.run_on_host(step, world));
     let asleep = world.resource::<SurfaceSleep>().asleep;
     world.insert_resource(SurfaceSleep { asked: false, asleep });
+    answered?;
     if !asleep {
         // who answers and then does something has run once
         passes.iter_mut().for_each(|pass| pass.runs -= 1);
