@@ -202,6 +202,14 @@ struct MeetingColumns {
     face_places: Option<&'static FacePlaces>,
 }
 
+impl Surface {
+    /// The number of a body; none of those that there are where it meets nobody.
+    fn number_of(&self, body: Entity) -> usize {
+        let place = self.numbers.binary_search_by_key(&body, |(entity, _)| *entity);
+        place.map_or(usize::MAX, |place| self.numbers[place].1)
+    }
+}
+
 impl SurfaceContacts {
     /// Of bodies that meet nobody yet.
     pub fn new(bodies: Vec<Entity>) -> Self {

@@ -92,8 +92,8 @@ pub(super) fn forget<T: Scalar>(contacts: &mut SurfaceContacts, now: &[u32], bod
     contacts.surface.touching.extend_from_slice(now);
 }
 
-/// Finds the forces of a step and adds them to the loads. Where somebody looks after it, it is noted what they give that
-/// they cannot: of one sweep of the kinematic law that is known.
+/// Finds the forces of a step and adds them to the loads. Where somebody looks after it, it is noted what they give
+/// that they cannot: of one sweep of the kinematic law that is known.
 pub(super) fn meet<T: Scalar>(
     contacts: &mut SurfaceContacts,
     (clock, cpu): (&Clock, &Cpu),

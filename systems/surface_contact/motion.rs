@@ -10,6 +10,7 @@ use crate::error::Error;
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+use smallvec::{SmallVec, smallvec};
 use web_time::Instant;
 
 /// Triangles whose normals a task finds.
@@ -89,11 +90,14 @@ fn follow<T: Scalar>(
     bodies: &Query<(Entity, MeetingColumns)>,
 ) -> f64 {
     let mut motion = std::mem::take(&mut contacts.surface.motion);
-    let entities = std::mem::take(&mut contacts.bodies);
-    let moving = |body: u32| {
-        let (_, MeetingColumnsReadOnlyItem { nodes, .. }) = bodies.get(entities[body as usize]).ok()?;
-        Some([nodes.u.slice::<T>(), nodes.step.slice::<T>()])
-    };
+    // by their numbers: one way through all is quicker than to look for each
+    let mut slices: SmallVec<[Option<[&[T]; 2]>; 16]> = smallvec![None; contacts.bodies.len()];
+    for (entity, MeetingColumnsReadOnlyItem { nodes, .. }) in bodies {
+        if let Some(of_body) = slices.get_mut(contacts.surface.number_of(entity)) {
+            *of_body = Some([nodes.u.slice(), nodes.step.slice()]);
+        }
+    }
+    let moving = |body: u32| slices[body as usize];
     motion.follow(&moving, clock, cpu);
     let reach = reach(contacts, motion.largest);
     contacts.surface.motion = motion;
@@ -103,7 +107,6 @@ fn follow<T: Scalar>(
         motion.look(&moving, cpu);
         contacts.surface.motion = motion;
     }
-    contacts.bodies = entities;
     reach
 }
 
