@@ -40,6 +40,8 @@ pub(super) struct InStep<'a> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Gathered {
     pub set: ContactSet,
+    /// The same before it is solved, where somebody looks afterwards.
+    pub before: ContactSet,
     pub met: Vec<Met>,
     /// Nodes of the set, by their place in it.
     pub acted_on: Vec<u32>,
@@ -53,7 +55,7 @@ impl Gathered {
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
         let of_nodes = size_of_val(&self.acted_on[..]) + size_of_val(&self.slots[..]);
-        self.set.bytes() + size_of_val(&self.met[..]) + of_nodes + size_of_val(&self.facing[..])
+        self.set.bytes() + self.before.bytes() + size_of_val(&self.met[..]) + of_nodes + size_of_val(&self.facing[..])
     }
 
     pub fn clear(&mut self) {

@@ -114,11 +114,14 @@ pub(super) fn meet<T: Scalar>(
     forget(contacts, &gathered.facing, bodies);
     let is_known = clock.relaxation.is_none() && contacts.sweeps <= 1;
     let gain = gain.filter(|_| is_known && !gathered.set.contacts.iter().any(|contact| contact.springs));
-    let before = gain.is_some().then(|| gathered.set.clone());
+    if gain.is_some() {
+        gathered.before.contacts.clone_from(&gathered.set.contacts);
+        gathered.before.steps.clone_from(&gathered.set.steps);
+    }
     gathered.set.solve(contacts.sweeps, cpu);
-    if let (Some(gain), Some(before)) = (gain, before) {
+    if let Some(gain) = gain {
         gain.steps += 1;
-        gain.energy += coefficients.work_factor * gathered.set.beyond_bound(&before);
+        gain.energy += coefficients.work_factor * gathered.set.beyond_bound(&gathered.before);
     }
     let work_factor = clock.relaxation.is_none().then_some(coefficients.work_factor);
     note_touches(contacts, &gathered, work_factor, bodies);
