@@ -11,6 +11,9 @@ const CONTACTS_A_TASK: usize = 256;
 /// So many contacts are worth the threads; fewer are added up one after the other.
 const WORTH_SHARING: usize = 1024;
 
+/// What is no gain of energy, as a share of what contacts give and take.
+const ROUNDING: f64 = 1e-9;
+
 /// A point and what it faces.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact {
@@ -234,6 +237,27 @@ impl ContactSet {
         forces.clear();
         forces.resize(steps.len(), DVec4::ZERO);
         cpu.dispatch(Forces { contacts, forces });
+    }
+
+    /// Kinetic energy (J) that one sweep has given beyond what it can, from contacts as they were `before` that; 0 where
+    /// it has not, but for rounding.
+    ///
+    /// That is at most Σ (g² − (n · r*)²)/(2D) + s²/(2D') over the contacts that press, r* the steps that were
+    /// predicted, s what has slipped elastically: a point that is not inside takes energy, and one that is gives back
+    /// what a spring would hold that is so stiff as to push it out in a step.
+    pub fn beyond_bound(&self, before: &[Contact]) -> f64 {
+        let (mut beyond, mut size) = (0.0, 0.0);
+        for (contact, start) in self.contacts.iter().zip(before).filter(|(of, _)| of.pressing > 0.0) {
+            let given = contact.force().dot(0.5 * (start.step + contact.step));
+            let along = contact.normal.dot(start.step);
+            let [inside, taken] = [start.gap, along].map(|length| length * length / (2.0 * contact.yields));
+            let rubs = contact.rubbing != DVec3::ZERO;
+            let slipped = if rubs { start.slip.length_squared() / (2.0 * contact.yields_along) } else { 0.0 };
+            beyond += given - inside + taken - slipped;
+            size += given.abs() + inside + taken + slipped;
+        }
+        // what is no number is told of
+        if beyond <= ROUNDING * size { 0.0 } else { beyond }
     }
 
     /// Lists contacts by node where there are so many that threads add up what they do: in the order in which one

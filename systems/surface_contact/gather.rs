@@ -42,6 +42,8 @@ pub(super) struct InStep {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Gathered {
     pub set: ContactSet,
+    /// Its contacts before it is solved, where somebody looks afterwards.
+    pub before: Vec<Contact>,
     pub met: Vec<Met>,
     /// Place of each node of the surfaces in the set, of those that are near something.
     pub slots: Vec<u32>,
@@ -52,8 +54,9 @@ pub(super) struct Gathered {
 impl Gathered {
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
-        let Self { set, met, slots, facing } = self;
-        set.bytes() + size_of_val(&met[..]) + size_of_val(&slots[..]) + size_of_val(&facing[..])
+        let Self { set, before, met, slots, facing } = self;
+        let of_points = size_of_val(&met[..]) + size_of_val(&facing[..]);
+        set.bytes() + size_of_val(&before[..]) + of_points + size_of_val(&slots[..])
     }
 
     pub fn clear(&mut self) {

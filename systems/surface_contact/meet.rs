@@ -95,11 +95,13 @@ pub(super) fn forget<T: Scalar>(contacts: &mut SurfaceContacts, now: &[u32], bod
     contacts.surface.touching.extend_from_slice(now);
 }
 
-/// Finds the forces of a step and adds them to the loads.
+/// Finds the forces of a step and adds them to the loads. Where somebody looks after it, it is noted what they give
+/// that they cannot: of one sweep of the kinematic law that is known.
 pub(super) fn meet<T: Scalar>(
     contacts: &mut SurfaceContacts,
     (clock, cpu): (&Clock, &Cpu),
     bodies: &mut [BodySlices<'_, T>],
+    gain: Option<&mut ContactGain>,
 ) {
     let coefficients = IntegrationCoefficients::<f64>::of(clock);
     let found = std::mem::take(&mut contacts.surface.found);
@@ -110,7 +112,16 @@ pub(super) fn meet<T: Scalar>(
     let in_step = InStep { largest: contacts.surface.motion.largest, settling: contacts.settling(clock) };
     gather(contacts, &mut gathered, &found, &in_step, bodies);
     forget(contacts, &gathered.facing, bodies);
+    let is_known = clock.relaxation.is_none() && contacts.sweeps <= 1;
+    let gain = gain.filter(|_| is_known && !gathered.set.contacts.iter().any(|contact| contact.springs));
+    if gain.is_some() {
+        gathered.before.clone_from(&gathered.set.contacts);
+    }
     gathered.set.solve(contacts.sweeps, cpu);
+    if let Some(gain) = gain {
+        gain.steps += 1;
+        gain.energy += coefficients.work_factor * gathered.set.beyond_bound(&gathered.before);
+    }
     let work_factor = clock.relaxation.is_none().then_some(coefficients.work_factor);
     note_touches(contacts, &gathered, work_factor, bodies);
     push(contacts, &gathered.set.forces, bodies);

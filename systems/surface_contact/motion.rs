@@ -1,12 +1,16 @@
-//! What may be left as it is while surfaces have moved so far: lists that hold all that is near serve on.
+//! What may be left as it is while surfaces have moved so far: all of it, or lists that hold all that is near.
 
 use super::body_slices::{BodySlices, vector};
 use super::survey::MARGIN;
-use super::{Surface, SurfaceContacts, crossings};
+use super::{MeetingColumns, MeetingColumnsReadOnlyItem, Surface, SurfaceContacts, crossings, faced, slices_of};
 use crate::backend::cpu::Cpu;
+use crate::components::Clock;
 use crate::contact::{Finder, Lists, Point, Shortlist};
+use crate::error::Error;
 use crate::math::Scalar;
+use bevy_ecs::prelude::*;
 use glam::DVec3;
+use smallvec::{SmallVec, smallvec};
 use web_time::Instant;
 
 /// Nodes whose places a task finds, and triangles whose normals.
@@ -39,6 +43,77 @@ impl SurfaceContacts {
     fn may_move(&self) -> f64 {
         (STEPS_OF_SHORTLISTS * self.surface.motion.largest).clamp(STAYS[0] * self.edge, STAYS[1] * self.edge)
     }
+}
+
+/// Bodies as slices, and whether anything may be near anything.
+type Searched<'a, T> = (bool, Vec<BodySlices<'a, T>>);
+
+/// How far faces must be looked at in this step (m); `None` where nothing was near anything in the last step, and
+/// nothing can be now.
+pub(super) fn awake<T: Scalar>(
+    contacts: &mut SurfaceContacts,
+    of: (&Clock, &Cpu),
+    bodies: &Query<(Entity, MeetingColumns)>,
+) -> Option<f64> {
+    let reach = follow::<T>(contacts, of, bodies);
+    let sleeps = contacts.sleeps(reach);
+    contacts.surface.figures.steps += 1;
+    contacts.surface.figures.asleep += u64::from(sleeps);
+    (!sleeps).then_some(reach)
+}
+
+/// Finds what points face; `None` where nothing was near anything in the last step, and nothing can be now.
+pub(super) fn search<'a, T: Scalar>(
+    contacts: &mut SurfaceContacts,
+    (clock, cpu): (&Clock, &Cpu),
+    bodies: &'a mut Query<(Entity, MeetingColumns)>,
+) -> Result<Option<Searched<'a, T>>, Error> {
+    let asked = contacts.surface.reach.take();
+    let Some(reach) = asked.or_else(|| awake::<T>(contacts, (clock, cpu), bodies)) else { return Ok(None) };
+    let bodies = slices_of::<T>(contacts, bodies)?;
+    if !contacts.lists_hold(reach) {
+        list(contacts, &bodies, reach, cpu);
+    }
+    if !faced::wake(contacts, reach) && contacts.surface.crossings.near.is_empty() {
+        contacts.surface.figures.asleep += 1;
+        return Ok(Some((false, bodies)));
+    }
+    update_places(contacts, &bodies, cpu);
+    if !contacts.shortlists_hold(reach) {
+        renew_shortlists(contacts, &bodies, reach);
+    }
+    faced::face(contacts, reach, cpu);
+    crossings::find(contacts, reach);
+    contacts.surface.figures.examined += contacts.surface.found.len() as u64;
+    Ok(Some((true, bodies)))
+}
+
+/// Follows how nodes move; gives how far faces must be looked at (m). It is looked where nodes are when what their
+/// steps add up to is too much to leave all as it is.
+fn follow<T: Scalar>(
+    contacts: &mut SurfaceContacts,
+    (clock, cpu): (&Clock, &Cpu),
+    bodies: &Query<(Entity, MeetingColumns)>,
+) -> f64 {
+    let mut motion = std::mem::take(&mut contacts.surface.motion);
+    // by their numbers: one way through all is quicker than to look for each
+    let mut slices: SmallVec<[Option<[&[T]; 2]>; 16]> = smallvec![None; contacts.bodies.len()];
+    for (entity, MeetingColumnsReadOnlyItem { nodes, .. }) in bodies {
+        if let Some(of_body) = slices.get_mut(contacts.surface.number_of(entity)) {
+            *of_body = Some([nodes.u.slice(), nodes.step.slice()]);
+        }
+    }
+    let moving = |body: u32| slices[body as usize];
+    motion.follow(&moving, clock, cpu);
+    let reach = reach(contacts, motion.largest);
+    contacts.surface.motion = motion;
+    let all_hold = || !contacts.is_idle() && contacts.lists_hold(reach) && contacts.shortlists_hold(reach);
+    if !contacts.sleeps(reach) && !all_hold() {
+        let mut motion = std::mem::take(&mut contacts.surface.motion);
+        motion.look(&moving, cpu);
+        contacts.surface.motion = motion;
+    }
+    reach
 }
 
 /// Where a node is (m, from the reference).

@@ -90,6 +90,7 @@ fn momentum_stays_and_energy_is_below_its_bound() {
                 })
                 .sum();
             assert!(later <= earlier + most + 1e-12 * earlier, "{later} of {earlier} and {most} J");
+            assert_eq!(set.beyond_bound(&before.contacts), 0.0);
         }
         // what is lost is what the forces took
         let took: f64 = set.contacts.iter().map(|contact| contact.work).sum();
@@ -98,6 +99,43 @@ fn momentum_stays_and_energy_is_below_its_bound() {
             assert!(contact.pressing >= 0.0 && contact.rubbing.length() <= friction * contact.pressing * (1.0 + 1e-12));
         }
     }
+}
+
+/// What has slipped elastically comes back at most; a law that pushes three times as hard gives more than it can.
+#[test]
+fn energy_beyond_the_bound_is_found() {
+    let mut random = Rng::with_seed(34);
+    let mut found = 0;
+    for round in 0..1000 {
+        let (all, _) = random_set(&mut random, 0.5, 0.05);
+        let ContactSet { steps, earlier, responses, .. } = all.clone();
+        let mut set = ContactSet { steps, earlier, responses, ..ContactSet::default() };
+        // several that share nodes correct each other by less
+        for mut contact in all.contacts.into_iter().take(if round % 2 == 0 { 1 } else { 40 }) {
+            contact.slip = 0.3 * vector(&mut random);
+            set.add(contact);
+        }
+        let before = set.clone();
+        set.solve(1, &one());
+        assert_eq!(set.beyond_bound(&before.contacts), 0.0);
+        for (step, predicted) in set.steps.iter_mut().zip(&before.steps) {
+            *step = *predicted + 3.0 * (*step - *predicted);
+        }
+        let find_steps = |set: &mut ContactSet| {
+            let ContactSet { contacts, steps, .. } = set;
+            contacts.iter_mut().for_each(|contact| contact.step = contact.parts.step(steps));
+        };
+        for contact in &mut set.contacts {
+            (contact.pressing, contact.rubbing) = (3.0 * contact.pressing, 3.0 * contact.rubbing);
+        }
+        find_steps(&mut set);
+        found += usize::from(set.beyond_bound(&before.contacts) > 0.0);
+        set.steps[0].x = f64::NAN;
+        find_steps(&mut set);
+        let has_first = set.contacts.iter().any(|of| of.pressing > 0.0 && of.parts.iter().any(|(node, _)| node == 0));
+        assert_eq!(set.beyond_bound(&before.contacts).is_nan(), has_first);
+    }
+    assert!(found > 50, "{found} of 500 that press alone, as far as they do");
 }
 
 /// The largest eigenvalue of D⁻¹ A is at most 1: by the power method.
