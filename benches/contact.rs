@@ -3,8 +3,9 @@
 //! how long lists take that tell what is near what, and what contact keeps in memory. The largest blocks have 10 092
 //! triangles and 146 334 tetrahedra each.
 //!
-//! `cargo bench --bench contact`; `-- large` and `-- small` run only some of it, `-- near` only steps with a fifth that
-//! touches, for profiles (`-- near faces`, `-- far`). Steps are timed in blocks by turns, and the best of each counts:
+//! `cargo bench --bench contact`; `-- large` and `-- small` run only some of it, `-- turns` whole steps of 10 368 and of
+//! 82 944 tetrahedra a block on one thread and on two, to compare two programs by turns (`-- turns 12` only the former),
+//! `-- near` only steps with a fifth that touches, for profiles (`-- near faces`, `-- far`). Steps are timed in blocks by turns, and the best of each counts:
 //! so other work on the machine does not. What lists take is added, spread over the steps that they serve.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -201,6 +202,14 @@ fn main() {
         return near.advance(10000).unwrap();
     }
     let [nodes, faces] = [("Tet4", "Nodes"), ("Tet4", "Faces")];
+    if asked("turns") {
+        for (cells, threads) in [(12, 1), (12, 2), (24, 1), (24, 2)] {
+            if [12, 24].iter().all(|only| *only == cells || !asked(&only.to_string())) {
+                [nodes, faces].into_iter().for_each(|points| shares(points, cells, threads, 0.0));
+            }
+        }
+        return;
+    }
     if !asked("large") {
         shares(("Hex8", "Nodes"), 8, 1, 0.0);
         shares(nodes, 12, 1, 0.0);

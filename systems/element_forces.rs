@@ -5,7 +5,9 @@
 use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::block_kernel::{BlockKernels, CornersAt};
-use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, PatchInterior, run_block, run_block_fast};
+use crate::backend::cpu::{
+    BlockColumns, BlockLaw, Cpu, InsidePatch, NodeColumns, PatchInterior, run_block, run_block_fast,
+};
 use crate::backend::kernel::{Fragment, Kernel};
 use crate::backend::patch_lists::pack;
 use crate::backend::step::{step_number, with_step};
@@ -87,9 +89,16 @@ impl BlockPartsItem<'_, '_> {
         (self.block.body, self.block.force_offset)
     }
 
-    /// How many nodes are inside each patch.
-    pub(super) fn interior(&self) -> &[u32] {
-        self.patches.map_or(&[], |patches| &patches.interior)
+    /// Takes the nodes inside each patch, one after the other, from the rows of a body that begin with those.
+    pub(super) fn take_inside<'n, T>(
+        &self,
+        rows: &mut NodeColumns<'n, T>,
+    ) -> impl ExactSizeIterator<Item = InsidePatch<'n, T>> {
+        let patches = self.patches;
+        (0..patches.map_or(0, |patches| patches.interior.len())).map(move |patch| {
+            let [free, deferred] = patches.map_or([0; 2], |patches| patches.inside(patch));
+            InsidePatch { free: rows.take(free), deferred: rows.take(deferred) }
+        })
     }
 
     /// Whether elements turned inside out are a mistake.

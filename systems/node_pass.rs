@@ -104,12 +104,18 @@ pub(super) struct InStep<'w> {
     pub(super) clock: Res<'w, Clock>,
     signals: Res<'w, Signals>,
     observed: Res<'w, Observed>,
+    surfaces: Option<Res<'w, SurfaceSleep>>,
 }
 
 impl InStep<'_> {
     /// Whether somebody may look at what is made and used in a pass after it.
     pub(super) fn is_observed(&self) -> bool {
         self.observed.0
+    }
+
+    /// Whether all sleep that act on surfaces.
+    pub(super) fn surfaces_sleep(&self) -> bool {
+        self.surfaces.as_ref().is_some_and(|surfaces| surfaces.asleep)
     }
 
     /// Whether somebody may look at the forces of a pass after it.
@@ -215,16 +221,17 @@ pub(super) fn act_after_gather<T: OfRun>(systems: &[BoundSystem<'_>], cpu: &Cpu,
 
 /// Node systems as one pass over all nodes, in their order.
 pub(crate) fn node_pass(pass: NodePass, world: &mut World) -> HostSystem {
-    pass_over(pass, |_| 0, world)
+    pass_over(pass, |_| None, world)
 }
 
-/// The same over those nodes that are inside no patch.
+/// The same over those nodes that have not moved with a patch: those of surfaces inside patches, and those inside none.
 pub(crate) fn shared_pass(pass: NodePass, world: &mut World) -> HostSystem {
-    pass_over(pass, |corners| corners.map_or(0, |corners| corners.first_interface), world)
+    pass_over(pass, |corners| corners, world)
 }
 
-/// Node systems as one pass over the nodes from a row on. Bodies do not wait for each other.
-fn pass_over(pass: NodePass, first: fn(Option<&Corners>) -> usize, world: &mut World) -> HostSystem {
+/// Node systems as one pass over all nodes, or over those that have not moved with a patch. Bodies do not wait for each
+/// other.
+fn pass_over(pass: NodePass, moved: fn(Option<&Corners>) -> Option<&Corners>, world: &mut World) -> HostSystem {
     type Bodies<'w, 's> = Query<'w, 's, (BodyColumns, Option<&'static ElementForce>, Option<&'static Corners>)>;
     let parameters = (
         QueryParamBuilder::new(|query| pass.callers(&NodePass::default(), query)),
@@ -238,14 +245,15 @@ fn pass_over(pass: NodePass, first: fn(Option<&Corners>) -> usize, world: &mut W
             cpu.for_each(bodies.iter_mut(), |(mut body, force, corners)| {
                 cpu.with_arena(|arena| {
                     let systems = pass.bind(&callers, &step, &body, arena);
-                    let first = first(corners);
+                    // where nothing is fixed but for good, `boundary` has nothing to do
+                    if systems.is_empty() {
+                        return;
+                    }
+                    let of_step = (&step, arena, observed, &undeclared);
+                    let moved = moved(corners);
                     match body.u.precision() {
-                        Precision::F32 => {
-                            move_from::<f32>(first, (&step, observed), &mut body, force, &systems, &undeclared)
-                        }
-                        Precision::F64 => {
-                            move_from::<f64>(first, (&step, observed), &mut body, force, &systems, &undeclared)
-                        }
+                        Precision::F32 => move_others::<f32>(of_step, &mut body, (force, moved), &systems),
+                        Precision::F64 => move_others::<f64>(of_step, &mut body, (force, moved), &systems),
                     }
                 });
             });
@@ -255,20 +263,26 @@ fn pass_over(pass: NodePass, first: fn(Option<&Corners>) -> usize, world: &mut W
     Box::new(system)
 }
 
-fn move_from<T: OfRun>(
-    first: usize,
-    (step, observed): (&InStep<'_>, bool),
+/// Takes all nodes of a body through systems but those that have `moved` with their patch. Tasks are of the same rows
+/// as where all nodes inside patches do, so that sums over them are the same.
+fn move_others<T: OfRun>(
+    (step, arena, observed, undeclared): (&InStep<'_>, &Bump, bool, &Undeclared),
     body: &mut BodyColumnsItem<'_, '_>,
-    force: Option<&ElementForce>,
+    (force, moved): (Option<&ElementForce>, Option<&Corners>),
     systems: &[BoundSystem<'_>],
-    undeclared: &Undeclared,
 ) {
     let non_finite = AtomicU32::new(u32::MAX);
     let mut columns = body.columns::<T>(force.map_or(&[], |force| force.slice()), &non_finite, undeclared);
-    if first > 0 {
-        columns.take(first);
+    let deferred = moved.map_or(&[][..], |moved| &moved.deferred[..]);
+    let deferred = arena.alloc_slice_fill_iter(deferred.iter().map(|rows| {
+        columns.take(rows.start - columns.first);
+        columns.take(rows.len())
+    }));
+    if let Some(moved) = moved {
+        columns.take(moved.first_interface - columns.first);
     }
-    move_rows(&step.cpu, observed, columns.tasks(ROWS_A_TASK), &[systems]);
+    let deferred = deferred.iter_mut().map(|rows| rows.take(rows.rows()));
+    move_rows(&step.cpu, observed, deferred.chain(columns.tasks(ROWS_A_TASK)), &[systems]);
     body.note_non_finite(non_finite, &step.clock);
 }
 

@@ -16,7 +16,8 @@ use std::sync::atomic::AtomicU32;
 type Bodies<'w, 's> = Query<'w, 's, (BodyColumns, &'static Corners, &'static mut ElementForce)>;
 
 /// `element_forces` and a pass over the nodes as one. Nodes inside patches go through the systems of another pass, too,
-/// which the others come to later. Bodies do not wait for each other: threads take patches of any.
+/// which the others come to later; in a step in which all sleep that act on surfaces in between, all nodes do. Bodies
+/// do not wait for each other: threads take patches of any.
 pub(crate) fn patch_pass(pass: NodePass, ahead: NodePass, world: &mut World) -> HostSystem {
     let ahead = ahead.after(&pass);
     let parameters = (
@@ -49,7 +50,7 @@ pub(crate) fn patch_pass(pass: NodePass, ahead: NodePass, world: &mut World) -> 
                             arena,
                             clock: &step.clock,
                             observed: step.is_observed(),
-                            to_come: !ahead.is_empty(),
+                            to_come: !ahead.is_empty() && !step.surfaces_sleep(),
                             first_interface: corners.first_interface,
                             systems: &pass.bind(&callers, &step, body, arena),
                             ahead: &ahead.bind(&callers, &step, body, arena),
@@ -74,13 +75,14 @@ struct StepOfBody<'a> {
     cpu: &'a Cpu,
     arena: &'a Bump,
     clock: &'a Clock,
-    /// Whether somebody may look at forces after the pass; and whether those on nodes outside patches are used later.
+    /// Whether somebody may look at forces after the pass; and whether those on nodes outside patches, and on nodes of
+    /// surfaces inside them, are used later.
     observed: bool,
     to_come: bool,
     first_interface: usize,
     /// What is done to nodes; to those inside a patch as soon as that has summed their forces.
     systems: &'a [BoundSystem<'a>],
-    /// What is done to those inside a patch afterwards, and to others later.
+    /// What is done to those inside a patch afterwards, and to others then or later.
     ahead: &'a [BoundSystem<'a>],
     undeclared: &'a Undeclared,
 }
@@ -92,16 +94,19 @@ impl StepOfBody<'_> {
         force: &mut ElementForce,
         blocks: &mut [BlockPartsItem<'_, '_>],
     ) {
-        let &Self { cpu, arena, clock, systems, ahead, .. } = self;
+        let &Self { cpu, arena, clock, to_come, systems, ahead, .. } = self;
         let non_finite = AtomicU32::new(u32::MAX);
         let mut shared = body.columns::<T>(&[], &non_finite, self.undeclared);
         let interior = arena.alloc_slice_fill_with(blocks.len(), |block| {
-            let patches = blocks[block].interior();
-            arena.alloc_slice_fill_with(patches.len(), |patch| shared.take(patches[patch] as usize))
+            arena.alloc_slice_fill_iter(blocks[block].take_inside(&mut shared))
         });
-        let then = |nodes: &mut NodeColumns<'_, T>| {
-            act_after_gather(systems, cpu, nodes);
-            act(ahead, cpu, nodes);
+        let then = |free: &mut NodeColumns<'_, T>, deferred: &mut NodeColumns<'_, T>| {
+            act_after_gather(systems, cpu, free);
+            act(ahead, cpu, free);
+            if deferred.rows() > 0 {
+                act_after_gather(systems, cpu, deferred);
+                act(if to_come { &[] } else { ahead }, cpu, deferred);
+            }
         };
         // of the blocks up to the last that has some
         let mut found: Vec<Vec<usize>> = Vec::new();
@@ -119,19 +124,20 @@ impl StepOfBody<'_> {
         }
         // nodes of patches in which elements were inverted are where they were
         let mut shared = body.columns::<T>(force.slice(), &non_finite, self.undeclared);
-        let mut left = Vec::new();
+        let (mut free, mut deferred) = (Vec::new(), Vec::new());
         for (block, found) in blocks.iter().zip(&found) {
-            for (patch, &rows) in block.interior().iter().enumerate() {
-                let nodes = shared.take(rows as usize);
-                left.extend(found.binary_search(&patch).is_ok().then_some(nodes));
+            let inside = block.take_inside(&mut shared).enumerate();
+            for (_, left) in inside.filter(|(patch, _)| found.binary_search(patch).is_ok()) {
+                free.push(left.free);
+                deferred.push(left.deferred);
             }
         }
         shared.take(self.first_interface - shared.first);
-        if !self.to_come {
-            move_rows(cpu, self.observed, left.into_iter().chain(shared.tasks(ROWS_A_TASK)), &[systems]);
-        } else {
-            move_rows(cpu, self.observed, left.into_iter(), &[systems, ahead]);
-            move_rows(cpu, true, shared.tasks(ROWS_A_TASK), &[systems]);
+        let others = deferred.into_iter().chain(shared.tasks(ROWS_A_TASK));
+        move_rows(cpu, self.observed, free.into_iter(), &[systems, ahead]);
+        match to_come {
+            true => move_rows(cpu, true, others, &[systems]),
+            false => move_rows(cpu, self.observed, others, &[systems, ahead]),
         }
         body.note_non_finite(non_finite, clock);
     }

@@ -19,7 +19,7 @@ use super::repeat::Repeat;
 use super::system::{Phase, System};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
-use crate::contact::{Lists, Near, Point, Shortlist, Stays, Surfaces, Tree};
+use crate::contact::{Lists, Near, Neighbourhoods, Point, Shortlist, Stays, Surfaces, Tree};
 use crate::error::{Error, missing};
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
@@ -52,6 +52,7 @@ pub fn system() -> System {
     );
     System {
         shared_only: surfaces_stay,
+        may_sleep: true,
         // where elements go, surfaces are found anew: on the host
         device_when: surfaces_stay,
         before_steps: Some(device::before_steps),
@@ -139,16 +140,20 @@ struct Surface {
     places: Vec<DVec3>,
     /// Which way the triangles look that are.
     normals: Vec<DVec3>,
-    fresh: Vec<DVec3>,
-    /// How far nodes have moved since the lists were made.
+    /// How far nodes have moved since the lists were made; and how far faces must be looked at in this step (m), where
+    /// that was found before forces.
     motion: look::Motion,
+    reach: Option<f64>,
     /// Of each point in the lists, how far that may be before it has to be looked at again (m), and the least of all.
     wake: Vec<f64>,
     first_wake: f64,
     /// Of each point in the lists, what of its list matters; empty before they are begun.
     shortlists: Vec<Shortlist>,
-    /// What shortlists allow for: how far nodes have moved since they were begun, and how far faces are looked at (m).
+    /// How far nodes may move from where they were when it was looked last whether these hold, and how far faces may be
+    /// looked at (m).
     stays: Stays,
+    /// Where nodes have moved how far since their shortlists were begun.
+    neighbourhoods: Neighbourhoods,
     /// Nodes that bore a force in the last step.
     pressed: Vec<u32>,
     /// Points that touched or faced something, ascending.
@@ -157,13 +162,13 @@ struct Surface {
     numbers: Vec<(Entity, usize)>,
     // what a step finds, kept so that the next one need not ask for memory
     found: Vec<faced::Found>,
-    kept_by_task: Vec<crate::contact::Kept>,
+    rooms: Vec<faced::Room>,
+    reaches: Vec<f64>,
     gathered: gather::Gathered,
     /// What may touch in an implicit step.
     pairs: Vec<solved::Pair>,
     /// Of each contact of an implicit step what it did at the end of the last one, and its slopes.
     solved: Vec<solved::Solved>,
-    forces: Vec<DVec3>,
     figures: Figures,
 }
 
@@ -197,6 +202,14 @@ struct MeetingColumns {
     touch: &'static mut SurfaceTouch,
     face_touch: Option<&'static mut FaceTouch>,
     face_places: Option<&'static FacePlaces>,
+}
+
+impl Surface {
+    /// The number of a body; none of those that there are where it meets nobody.
+    fn number_of(&self, body: Entity) -> usize {
+        let place = self.numbers.binary_search_by_key(&body, |(entity, _)| *entity);
+        place.map_or(usize::MAX, |place| self.numbers[place].1)
+    }
 }
 
 impl SurfaceContacts {
@@ -266,15 +279,20 @@ impl SurfaceContacts {
     }
 }
 
+/// A step, or whether it sleeps through it, where that is asked before.
 fn surface_contact(
-    (clock, cpu): (Res<Clock>, Res<Cpu>),
+    (clock, cpu, observed): (Res<Clock>, Res<Cpu>, Option<Res<Observed>>),
     mut contacts: ResMut<SurfaceContacts>,
+    (mut sleep, mut gain): (Option<ResMut<SurfaceSleep>>, Option<ResMut<ContactGain>>),
     mut bodies: Query<(Entity, MeetingColumns)>,
     authorings: Query<&Authoring>,
     blocks: Query<Ref<Alive>>,
 ) -> Result<(), Error> {
     let contacts = &mut *contacts;
+    let asked = sleep.as_mut().filter(|sleep| sleep.asked);
     match clock.springs.map(|springs| springs.forces) {
+        // where it has been asked
+        None if contacts.surface.reach.is_some() && asked.is_none() => {}
         None | Some(SpringForces::Sought | SpringForces::Stepped) => {
             survey::follow(contacts, &mut bodies, &authorings, &blocks)
         }
@@ -282,9 +300,20 @@ fn surface_contact(
         Some(SpringForces::Omitted) => return Ok(()),
     }
     let precision = bodies.iter().next().map(|(_, columns)| columns.nodes.u.precision());
+    let of_step = (&*clock, &*cpu);
+    if let Some(sleep) = asked {
+        contacts.surface.reach = match precision.filter(|_| clock.springs.is_none()) {
+            Some(Precision::F32) => motion::awake::<f32>(contacts, of_step, &bodies),
+            Some(Precision::F64) => motion::awake::<f64>(contacts, of_step, &bodies),
+            None => None,
+        };
+        sleep.asleep &= clock.springs.is_none() && contacts.surface.reach.is_none();
+        return Ok(());
+    }
+    let gain = gain.as_deref_mut().filter(|_| observed.is_some_and(|observed| observed.0));
     match precision {
-        Some(Precision::F32) => step::<f32>(contacts, (&clock, &cpu), &mut bodies),
-        Some(Precision::F64) => step::<f64>(contacts, (&clock, &cpu), &mut bodies),
+        Some(Precision::F32) => step::<f32>(contacts, of_step, &mut bodies, gain),
+        Some(Precision::F64) => step::<f64>(contacts, of_step, &mut bodies, gain),
         None => Ok(()),
     }
 }
@@ -293,16 +322,17 @@ fn step<T: Scalar>(
     contacts: &mut SurfaceContacts,
     of: (&Clock, &Cpu),
     bodies: &mut Query<(Entity, MeetingColumns)>,
+    gain: Option<&mut ContactGain>,
 ) -> Result<(), Error> {
     match &of.0.springs {
         Some(springs) if matches!(springs.forces, SpringForces::Sought | SpringForces::Stepped) => {
             contacts.surface.pairs.clear();
-            let Some((is_near, mut bodies)) = search::<T>(contacts, of, bodies)? else { return Ok(()) };
+            let Some((is_near, mut bodies)) = motion::search::<T>(contacts, of, bodies)? else { return Ok(()) };
             if is_near {
                 solved::pair(contacts, of.0, &mut bodies);
             }
             if springs.forces == SpringForces::Stepped {
-                solved::press(contacts, (of.0, springs), &mut bodies);
+                solved::press(contacts, (of.0, springs, of.1), &mut bodies);
             }
         }
         // before the first step nobody has looked
@@ -310,16 +340,16 @@ fn step<T: Scalar>(
         Some(springs) => {
             let mut bodies = slices_of::<T>(contacts, bodies)?;
             motion::update_places(contacts, &bodies, of.1);
-            solved::press(contacts, (of.0, springs), &mut bodies);
+            solved::press(contacts, (of.0, springs, of.1), &mut bodies);
         }
-        None => match search::<T>(contacts, of, bodies)? {
+        None => match motion::search::<T>(contacts, of, bodies)? {
             None => {}
             Some((false, mut bodies)) => {
                 meet::release(&mut contacts.surface, &mut bodies);
                 meet::forget(contacts, &[], &mut bodies);
             }
             Some((true, mut bodies)) => {
-                meet::meet(contacts, of, &mut bodies);
+                meet::meet(contacts, of, &mut bodies, gain);
                 contacts.surface.figures.contacts += contacts.surface.gathered.set.contacts.len() as u64;
             }
         },
@@ -333,63 +363,4 @@ fn slices_of<'a, T: Scalar>(
 ) -> Result<Vec<BodySlices<'a, T>>, Error> {
     let bodies = body_slices::slices::<T>(contacts, bodies);
     if bodies.len() == contacts.bodies.len() { Ok(bodies) } else { Err(missing("a column of a body")) }
-}
-
-/// Bodies as slices, and whether anything may be near anything.
-type Searched<'a, T> = (bool, Vec<BodySlices<'a, T>>);
-
-/// Finds what points face; `None` where nothing was near anything in the last step, and nothing can be now.
-fn search<'a, T: Scalar>(
-    contacts: &mut SurfaceContacts,
-    (clock, cpu): (&Clock, &Cpu),
-    bodies: &'a mut Query<(Entity, MeetingColumns)>,
-) -> Result<Option<Searched<'a, T>>, Error> {
-    contacts.surface.figures.steps += 1;
-    let reach = follow::<T>(contacts, (clock, cpu), bodies);
-    if contacts.sleeps(reach) {
-        contacts.surface.figures.asleep += 1;
-        return Ok(None);
-    }
-    let bodies = slices_of::<T>(contacts, bodies)?;
-    if !contacts.lists_hold(reach) {
-        motion::list(contacts, &bodies, reach, cpu);
-    }
-    if !faced::wake(contacts, reach) && contacts.surface.crossings.near.is_empty() {
-        contacts.surface.figures.asleep += 1;
-        return Ok(Some((false, bodies)));
-    }
-    motion::update_places(contacts, &bodies, cpu);
-    if !contacts.shortlists_hold(reach) {
-        motion::begin_shortlists(contacts, &bodies, reach);
-    }
-    faced::face(contacts, reach, cpu);
-    crossings::find(contacts, reach);
-    contacts.surface.figures.examined += contacts.surface.found.len() as u64;
-    Ok(Some((true, bodies)))
-}
-
-/// Follows how nodes move; gives how far faces must be looked at (m). It is looked where nodes are when what their
-/// steps add up to is too much to leave all as it is.
-fn follow<T: Scalar>(
-    contacts: &mut SurfaceContacts,
-    (clock, cpu): (&Clock, &Cpu),
-    bodies: &Query<(Entity, MeetingColumns)>,
-) -> f64 {
-    let mut motion = std::mem::take(&mut contacts.surface.motion);
-    let entities = std::mem::take(&mut contacts.bodies);
-    let moving = |body: u32| {
-        let (_, MeetingColumnsReadOnlyItem { nodes, .. }) = bodies.get(entities[body as usize]).ok()?;
-        Some([nodes.u.slice::<T>(), nodes.step.slice::<T>()])
-    };
-    motion.follow(&moving, clock, cpu);
-    let reach = motion::reach(contacts, motion.largest);
-    contacts.surface.motion = motion;
-    let all_hold = || !contacts.is_idle() && contacts.lists_hold(reach) && contacts.shortlists_hold(reach);
-    if !contacts.sleeps(reach) && !all_hold() {
-        let mut motion = std::mem::take(&mut contacts.surface.motion);
-        motion.look(&moving, cpu);
-        contacts.surface.motion = motion;
-    }
-    contacts.bodies = entities;
-    reach
 }

@@ -131,8 +131,11 @@ pub struct System {
     pub(crate) device_when: fn(&World) -> bool,
     /// What must be done on the host before steps are submitted to a GPU, and how many there may be at most.
     pub(crate) before_steps: Option<BeforeSteps>,
-    /// Whether, in a world, it concerns only nodes that are inside no patch.
+    /// Whether, in a world, it concerns only nodes of surfaces ([`SurfaceRows`](crate::components::SurfaceRows)).
     pub(crate) shared_only: fn(&World) -> bool,
+    /// Whether it says before any force is known, by where nodes are, if it does something in a step
+    /// ([`SurfaceSleep`](crate::components::SurfaceSleep)).
+    pub(crate) may_sleep: bool,
     /// What of it a step repeats, in a world: on a GPU the kernels that say so.
     pub(crate) repeats: fn(&World) -> Option<Repeat>,
     /// Whether it is not one of the engine's own.
@@ -214,6 +217,7 @@ impl System {
             device_when: |_| true,
             before_steps: None,
             shared_only: |_| false,
+            may_sleep: false,
             repeats: |_| None,
             custom: true,
             parameters: None,

@@ -16,13 +16,14 @@ use crate::backend::cpu::{Cpu, Foreseen, NodeColumns};
 use crate::backend::kernel::{Uniform, uniform};
 use crate::backend::node_stage::NodeStage;
 use crate::components::*;
-use crate::math::SimdScalar;
+use crate::math::{Extremes, See, SimdScalar};
 use crate::shader;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 pub use in_step::ContactStep;
 use in_step::ToolInStep;
 use smallvec::SmallVec;
+use std::ops::Range;
 pub(crate) use solved::find as find_tool_springs;
 pub(super) use stage::{ToolNodes, stage as tool_stage};
 
@@ -104,33 +105,60 @@ impl NodeSystem for ToolContacts {
         ForceSlopes::NONE
     }
 
-    fn act<T: SimdScalar>(&self, step: &ContactStep, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+    fn act<T: SimdScalar>(&self, step: &ContactStep, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
         let Some(touches) = nodes.touches.take() else { return };
         let own = places_within(&self.rows, nodes.first, nodes.rows());
-        let rows = self.rows[own.clone()].iter().zip(&self.masks[own]);
-        for ((&row, &mask), values) in rows.zip(touches.values.chunks_exact_mut(touches.numbers.max(1))) {
-            let (row, mask) = (row as usize - nodes.first, mask & self.all());
-            match &step.springs {
-                Some(springs) if springs.forces.are_noted() => {
-                    self.press((step, springs), (row, mask), nodes, values);
-                }
-                // the solver finds them apart
-                Some(_) => {}
-                None => {
-                    let place = nodes.rest[row] - self.reference + nodes.displacement(row);
-                    let near = step.near(mask, place);
-                    // most nodes are far from all tools, and were: nothing is read or written there but that
-                    if near != 0 || self.is_touched(values) {
-                        self.touch(step, (row, near, place), nodes, values);
+        let mut values = touches.values.chunks_exact_mut(touches.numbers.max(1));
+        let mut from = own.start;
+        while from < own.end {
+            let to = own.end.min((from / Self::TOGETHER + 1) * Self::TOGETHER);
+            // most nodes are far from all tools, and were: nothing is read or written there but that
+            let are_near = step.springs.is_none() && self.are_near(step, from..to, cpu, nodes);
+            for (place, values) in (from..to).zip(&mut values) {
+                let (row, mask) = (self.rows[place] as usize - nodes.first, self.masks[place] & self.all());
+                match &step.springs {
+                    Some(springs) if springs.forces.are_noted() => {
+                        self.press((step, springs), (row, mask), nodes, values);
                     }
+                    // the solver finds them apart
+                    Some(_) => {}
+                    None if are_near => {
+                        let place = nodes.rest[row] - self.reference + nodes.displacement(row);
+                        let near = step.near(mask, place);
+                        if near != 0 || self.is_touched(values) {
+                            self.touch(step, (row, near, place), nodes, values);
+                        }
+                    }
+                    None if self.is_touched(values) => self.touch(step, (row, 0, DVec3::ZERO), nodes, values),
+                    None => {}
                 }
             }
+            from = to;
         }
         nodes.touches = Some(touches);
     }
 }
 
 impl ToolContacts {
+    /// Whether a tool may be near some of these nodes, by their places in the list: by what all lie within at rest, and
+    /// what the displacements of all rows from the first to the last do.
+    fn are_near<T: SimdScalar>(
+        &self,
+        step: &ContactStep,
+        places: Range<usize>,
+        cpu: &Cpu,
+        nodes: &NodeColumns<'_, T>,
+    ) -> bool {
+        let (rows, first) = (&self.rows[places.clone()], nodes.first);
+        let (Some(from), Some(to)) = (rows.first(), rows.last()) else { return false };
+        let Some([low, high]) = self.boxes.get(places.start / Self::TOGETHER) else { return true };
+        let mut seen = Extremes::none();
+        let now = &nodes.displacements()[3 * (*from as usize - first)..3 * (*to as usize + 1 - first)];
+        cpu.dispatch(See { seen: &mut seen, now, then: None });
+        let [least, largest] = seen.bounds();
+        step.meets([*low + least, *high + largest])
+    }
+
     /// Whether tools touched a node in the last step, by its numbers.
     #[inline(always)]
     fn is_touched<T: SimdScalar>(&self, values: &[T]) -> bool {

@@ -106,6 +106,15 @@ const TOUCHING: &str = r#"(duration: 10, materials: {"m": (density: 1000, neo_ho
     contacts: [Tool(tool: "table", body: "low", friction: 0.5), Between(bodies: ("low", "up"), friction: 0.5)],
     integration: (when_unstable: Watch))"#;
 
+/// Two bodies of several patches that are far from each other, so that contact sleeps.
+const APART: &str = r#"(duration: 10, materials: {"m": (density: 1000, neo_hookean: Young(young: 3e4, poisson: 0.45))},
+    bodies: {
+        "low": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (9, 9, 9)), material: "m"),
+        "up": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (8, 8, 8), elements: Tet4), material: "m", translate: (0, 0, 0.1)),
+    },
+    loads: [Gravity(body: "up", acceleration: (0, 0, -0.01))], contacts: [Between(bodies: ("low", "up"), friction: 0.5)],
+    integration: (when_unstable: Watch))"#;
+
 /// Implicit steps of a bar that sags.
 const IMPLICIT: &str = r#"(duration: 10, materials: {"m": (density: 1000, neo_hookean: Young(young: 3e4, poisson: 0.45))},
     bodies: {"bar": (mesh: Box(size: (0.1, 0.02, 0.02), cells: (10, 3, 3)), material: "m")},
@@ -176,6 +185,7 @@ fn a_step_asks_for_no_memory() {
         ("five bodies", BODIES, NOTHING),
         ("attachments", ATTACHED, NOTHING),
         ("bodies that touch", TOUCHING, CONTACT),
+        ("bodies far from each other", APART, NOTHING),
         ("implicit steps", IMPLICIT, NEWTON),
     ];
     for (what, text, asks) in texts {

@@ -73,8 +73,10 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let settling = settling(body, edge, world);
         let led = |contact: &ToolContact| scene.tools.get(&contact.tool).is_some_and(|tool| tool.port.is_some());
         let felt = tools.iter().any(led);
-        let (rows, masks) = marks.into_iter().unzip();
-        let contacts = ToolContacts { tools, reference, rows, masks, edge, settling, felt };
+        let (rows, masks): (Vec<u32>, _) = marks.into_iter().unzip();
+        let rest = world.get::<RestPosition>(body.entity).map_or(&[][..], |rest| &rest.0);
+        let boxes = ToolContacts::boxes_of(&rows, rest, reference);
+        let contacts = ToolContacts { tools, reference, rows, masks, boxes, edge, settling, felt };
         let touch = Reals::zeros(assembly.precision, contacts.numbers() * contacts.rows.len());
         world.entity_mut(body.entity).insert((contacts, ToolTouch(touch)));
     }

@@ -98,21 +98,26 @@ fn corners(nodes: usize, places: &[(u32, u32)], stride: usize) -> Corners {
         corners[next[node as usize] as usize] = place;
         next[node as usize] += 1;
     }
-    Corners { starts, corners, stride, first_interface: 0 }
+    Corners { starts, corners, stride, first_interface: 0, deferred: Vec::new() }
 }
 
-/// Counts the nodes of each patch that nobody else has and that follow those of the patches before; but those that are
-/// kept apart.
+/// Counts the nodes of each patch that nobody else has and that follow those of the patches before: first those that
+/// always move with it, then those that are kept apart.
 fn find_inside(patches: &mut Patches, corners: &mut Corners, apart: &[u32]) {
     let is_apart = |row: usize| apart.binary_search(&(row as u32)).is_ok();
-    let alone = |row: usize| corners.starts[row + 1] - corners.starts[row] == 1 && !is_apart(row);
+    let alone = |row: usize| corners.starts[row + 1] - corners.starts[row] == 1;
     let mut next = corners.first_interface;
     for ends in patches.starts.windows(2) {
         let nodes = patches.nodes[ends[0] as usize..ends[1] as usize].iter().zip(next..);
-        let interior = nodes.take_while(|&(&node, wanted)| node as usize == wanted && alone(wanted)).count();
-        let interior = if interior < GROUP_ROWS { 0 } else { interior };
-        patches.interior.push(interior as u32);
-        next += interior;
+        let own = nodes.take_while(|&(&node, wanted)| node as usize == wanted && alone(wanted)).count();
+        let free = (next..next + own).take_while(|&row| !is_apart(row)).count();
+        let [free, deferred] = inside_of([free, own - free]);
+        patches.interior.push((free + deferred) as u32);
+        patches.deferred.push(deferred as u32);
+        if deferred > 0 {
+            corners.deferred.push(next + free..next + free + deferred);
+        }
+        next += free + deferred;
     }
     corners.first_interface = next;
 }

@@ -47,10 +47,31 @@ impl ContactSpring {
 /// Numbers a node in [`SurfaceTouch`], and a point in [`FaceTouch`].
 pub const MEETING_NUMBERS: usize = 8;
 
-/// Rows of the nodes of a body's surface that may meet others or be tied to one, ascending: no patch moves them as one
-/// of its own, so that all forces on them are known before they move. On bodies whose surface stays the same.
+/// Rows of the nodes of a body's surface that may meet others or be tied to one, ascending: in steps in which something
+/// acts on surfaces no patch moves them as some of its own, so that all forces on them are known before they move. On
+/// bodies whose surface stays the same.
 #[derive(Component, Clone, Debug)]
 pub struct SurfaceRows(pub Vec<u32>);
+
+/// Whether anything acts on surfaces in a step once the forces of elements are known. What may do so is asked before
+/// that, and says whether it does by where nodes are: while all of it sleeps, nodes of surfaces move with their
+/// patches.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SurfaceSleep {
+    /// Whether systems are asked now, and must do no more than answer.
+    pub asked: bool,
+    /// Whether all sleep; who does not says so.
+    pub asleep: bool,
+}
+
+/// What contact between surfaces gave that its law cannot give, of steps after which somebody looks.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactGain {
+    /// How many these were.
+    pub steps: u64,
+    /// The energy (J): see [`ContactSet::beyond_bound`](crate::contact::ContactSet::beyond_bound).
+    pub energy: f64,
+}
 
 /// Where in [`FaceTouch`] the points of each facet are that the body's elements have. Exists on bodies that may lose
 /// elements: each point keeps its place while others go and are laid bare. A facet between two elements is there once,

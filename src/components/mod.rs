@@ -64,7 +64,10 @@ pub use column_layout::{Increments, Rows, Subject};
 #[doc(hidden)]
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
 #[doc(hidden)]
-pub use contact::{ContactForce, ContactSpring, FacePlaces, FaceTouch, MEETING_NUMBERS, SurfaceRows, SurfaceTouch};
+pub use contact::{
+    ContactForce, ContactGain, ContactSpring, FacePlaces, FaceTouch, MEETING_NUMBERS, SurfaceRows, SurfaceSleep,
+    SurfaceTouch,
+};
 #[doc(hidden)]
 pub use free_tool::{FreeMotion, FreeMotions, FreeTool, FreeTools, FreeTouch, MetBody};
 #[doc(hidden)]
@@ -93,7 +96,7 @@ pub use observation::{AlsoWritten, Cadence, HeldEnergies, HeldEnergy, Observed, 
 #[doc(hidden)]
 pub use own_load::{LoadText, NodeAtRest, OfSystem, OwnLoad};
 #[doc(hidden)]
-pub use patches::Patches;
+pub use patches::{Patches, inside_of};
 #[doc(hidden)]
 pub use signal::Signal;
 #[doc(hidden)]

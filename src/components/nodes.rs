@@ -6,6 +6,7 @@ use crate::mesh::{Cells, Ids, Mesh, SurfaceFace};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Positions at rest (m), always in f64.
 #[derive(Component, Clone, Debug)]
@@ -101,6 +102,8 @@ pub struct Corners {
     pub stride: usize,
     /// The first row that is not [inside](super::Patches::interior) a patch.
     pub first_interface: usize,
+    /// Rows before that which may have to [wait](super::Patches::deferred), patch by patch.
+    pub deferred: Vec<Range<usize>>,
 }
 
 /// How the author numbers and orders what the engine has renumbered.

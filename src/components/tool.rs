@@ -195,6 +195,9 @@ pub struct ToolContacts {
     pub rows: Vec<u32>,
     /// Of each of them, which tools: bit i is tool i.
     pub masks: Vec<u32>,
+    /// What each [`ToolContacts::TOGETHER`] of them, one after the other, lie within at rest (m, from the reference):
+    /// the least and the largest coordinates.
+    pub boxes: Vec<[DVec3; 2]>,
     /// Length of an edge of the surface (m): who is farther off cannot be there within a step.
     pub edge: f64,
     /// How fast nodes that are inside a tool at the start are pushed out (m/s).
@@ -206,6 +209,18 @@ pub struct ToolContacts {
 impl ToolContacts {
     /// Tools that one body may meet: bits of a mask.
     pub const MOST: usize = crate::scene::limits::TOOLS_OF_A_BODY;
+
+    /// Nodes of which it is looked together whether tools are near.
+    pub const TOGETHER: usize = 64;
+
+    /// What nodes lie within at rest, from places of all (m): see [`ToolContacts::boxes`].
+    pub fn boxes_of(rows: &[u32], rest: &[DVec3], reference: DVec3) -> Vec<[DVec3; 2]> {
+        let places = |rows: &[u32]| {
+            let places = || rows.iter().filter_map(|&row| rest.get(row as usize)).map(|place| *place - reference);
+            [places().fold(DVec3::INFINITY, DVec3::min), places().fold(DVec3::NEG_INFINITY, DVec3::max)]
+        };
+        rows.chunks(Self::TOGETHER).map(places).collect()
+    }
 
     /// Numbers a node in [`ToolTouch`].
     pub fn numbers(&self) -> usize {

@@ -10,7 +10,7 @@ use glam::DVec3;
 pub(super) const ON_IT: f64 = 1e-3;
 
 /// What is at less than this of another distance is nearer, whatever rounding does.
-const NEARER: f64 = 1.0 - 1e-6;
+pub(super) const NEARER: f64 = 1.0 - 1e-6;
 
 /// Triangles that may be near a point, and how far they were when that was found.
 #[derive(Clone, Copy, Debug)]
@@ -33,11 +33,15 @@ impl Listed<'_> {
 }
 
 /// A triangle, where it is nearest to a point, and how far that is (m).
-type Nearest = (u32, (OnTriangle, f64));
+pub(super) type Nearest = (u32, (OnTriangle, f64));
 
-/// Room for where triangles are nearest, so that the next point need not ask for memory.
+/// Room for what is found about a point, so that the next one need not ask for memory.
 #[derive(Clone, Debug, Default)]
-pub struct Kept(Vec<Nearest>);
+pub struct Kept {
+    pub(super) nearest: Vec<Nearest>,
+    /// Normals of the triangles around a node, and by how much each may turn at most.
+    pub(super) around: Vec<(DVec3, f64)>,
+}
 
 /// Where triangles are nearest to a point: of those of its list that are looked at found beforehand.
 pub(super) struct Candidates<'a, 'k> {
@@ -45,7 +49,7 @@ pub(super) struct Candidates<'a, 'k> {
     now: Placed<'a>,
     at: DVec3,
     pub(super) listed: Listed<'a>,
-    kept: &'k mut Kept,
+    kept: &'k mut Vec<Nearest>,
     edge: f64,
 }
 
@@ -57,20 +61,25 @@ impl<'a, 'k> Candidates<'a, 'k> {
         at: DVec3,
         listed: Listed<'a>,
         edge: f64,
-        kept: &'k mut Kept,
+        kept: &'k mut Vec<Nearest>,
     ) -> Self {
-        kept.0.clear();
+        kept.clear();
         Self { surfaces, now, at, listed, kept, edge }
     }
 
-    /// Finds beforehand where those at such places in the list are nearest.
+    /// Finds beforehand where a triangle is nearest.
     #[inline]
-    pub(super) fn find(&mut self, places: impl Iterator<Item = usize>) {
-        for place in places {
-            let triangle = self.listed.triangles[place];
+    pub(super) fn find(&mut self, triangle: u32) {
+        let nearest = self.nearest_of(triangle);
+        self.kept.push((triangle, nearest));
+    }
+
+    /// The same of all in the list; those that cannot be near enough are nowhere.
+    pub(super) fn find_listed(&mut self) {
+        for (place, &triangle) in self.listed.triangles.iter().enumerate() {
             let nowhere = || (OnTriangle { at: DVec3::ZERO, weights: [0.0; 3], part: 0 }, f64::INFINITY);
             let nearest = if self.listed.is_far(place) { nowhere() } else { self.nearest_of(triangle) };
-            self.kept.0.push((triangle, nearest));
+            self.kept.push((triangle, nearest));
         }
     }
 
@@ -83,12 +92,12 @@ impl<'a, 'k> Candidates<'a, 'k> {
     /// The nearest place of the triangle that was found as that number, and how far that is (m).
     #[inline]
     pub(super) fn nearest(&self, number: usize) -> &(OnTriangle, f64) {
-        &self.kept.0[number].1
+        &self.kept[number].1
     }
 
     /// How far a triangle is (m), whether it is in the list or not; infinitely far where it cannot be near enough.
     fn distance(&self, triangle: u32) -> f64 {
-        match self.kept.0.iter().find(|(other, ..)| *other == triangle) {
+        match self.kept.iter().find(|(other, ..)| *other == triangle) {
             Some(&(_, (_, distance))) => distance,
             None => self.nearest_of(triangle).1,
         }
@@ -100,17 +109,10 @@ impl<'a, 'k> Candidates<'a, 'k> {
         found.part == 0 || *distance <= ON_IT * self.edge
     }
 
-    /// Whether one of the triangles found beforehand shows that the surface around a place that is nearest goes on
-    /// nearer. As a rule the face that a point is in front of is among them, and what is beside it is done with.
-    #[inline]
-    pub(super) fn is_beside(&self, triangle: u32, (found, distance): &(OnTriangle, f64)) -> bool {
-        self.shows_nearer(triangle, found.part, (0.0, NEARER * distance))
-    }
-
     /// Whether a triangle found beforehand that shares a part of one is nearer than a distance, by so much (both m).
     #[inline]
     fn shows_nearer(&self, triangle: u32, part: usize, (by, distance): (f64, f64)) -> bool {
-        self.kept.0.iter().any(|&(other, (_, of_other))| {
+        self.kept.iter().any(|&(other, (_, of_other))| {
             of_other + by < distance && other != triangle && self.surfaces.shares_part(other, triangle, part)
         })
     }
@@ -124,7 +126,7 @@ impl<'a, 'k> Candidates<'a, 'k> {
     /// How far the point is outside of a triangle, whose nearest place is known; `None` where another triangle must be
     /// nearer, and of triangles without area.
     pub(super) fn outside(&self, triangle: u32, (found, distance): (OnTriangle, f64)) -> Option<Facing> {
-        let normal = self.now.normals[triangle as usize];
+        let normal = self.surfaces.normal_now(self.now, triangle);
         if normal == DVec3::ZERO || !found.at.is_finite() {
             return None;
         }

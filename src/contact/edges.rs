@@ -80,7 +80,7 @@ impl Surfaces {
         if !(s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0) {
             return None;
         }
-        let outwards = |edge: &Edge| edge.triangles.iter().map(|&of| now.normals[of as usize]).sum::<DVec3>();
+        let outwards = |edge: &Edge| edge.triangles.iter().map(|&of| self.normal_now(now, of)).sum::<DVec3>();
         let across = along.cross(beside).normalize_or_zero();
         let normal = if across.dot(outwards(other)) >= 0.0 { across } else { -across };
         if normal == DVec3::ZERO || normal.dot(outwards(one)) >= 0.0 {

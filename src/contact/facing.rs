@@ -1,6 +1,7 @@
 //! The face that a point faces.
 
-use super::candidates::{Candidates, Kept, Listed, ON_IT};
+use super::candidates::{Candidates, Kept, Listed, NEARER, ON_IT};
+use super::pairs::Pairs;
 use super::shortlist::{Shortlist, Stays};
 use super::surfaces::{Placed, Point, Surfaces};
 use crate::math::OnTriangle;
@@ -31,6 +32,19 @@ pub struct Facing {
     pub gap: f64,
 }
 
+/// The normal of the triangle that the last point of a face was on, as is the next as a rule.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Own(Option<(u32, DVec3)>);
+
+impl Own {
+    fn normal(&mut self, surfaces: &Surfaces, now: Placed<'_>, triangle: u32) -> DVec3 {
+        match self.0.filter(|(known, _)| *known == triangle) {
+            Some((_, normal)) => normal,
+            None => self.0.insert((triangle, surfaces.normal_now(now, triangle))).1,
+        }
+    }
+}
+
 /// What a point faces: the face in its way, and where that is a wall of a corner, the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Faced {
@@ -48,60 +62,105 @@ impl Faced {
 }
 
 impl Surfaces {
-    /// What a point faces among triangles that are no farther than `reach` (m), and which of them matter as long as
-    /// nodes move no farther than a shortlist allows for; where that is known, the others are not looked at. `edge` is
-    /// the length of an edge (m).
-    pub fn faced(
-        &self,
-        now: Placed<'_>,
-        point: &Point,
-        listed: Listed<'_>,
-        (reach, edge): (impl Fn(u32) -> f64, f64),
-        (short, stays): (&mut Shortlist, Stays),
-        (faced, kept): (&mut Faced, &mut Kept),
-    ) {
-        (faced.first, faced.second, faced.wakes) = (None, None, short.wakes);
-        match short.places() {
-            Some([]) => return,
-            Some([only]) => {
-                let of = (now, point, point.place(now.places));
-                let only = (usize::from(*only), short.is_turned_away(0));
-                if self.face_alone(of, listed, only, (&reach, edge), faced) {
-                    return;
-                }
-            }
-            _ => {}
+    /// Asks where the triangles of a point's shortlist are nearest, as many as that has.
+    #[inline]
+    pub fn ask(&self, places: &[DVec3], point: &Point, short: &Shortlist, pairs: &mut Pairs) {
+        let triangles = short.triangles().unwrap_or_default();
+        if !triangles.is_empty() {
+            let at = point.place(places);
+            triangles.iter().for_each(|&triangle| pairs.add(at, self.corners(places, triangle)));
         }
-        self.choose((now, point, point.place(now.places)), listed, (reach, edge), (short, stays), (faced, kept));
     }
 
-    /// The same where there is something to choose.
-    #[inline(never)] // all points would make room for what few need
-    fn choose(
+    /// What a point faces whose shortlist was asked about, from such a pair on: where all triangles that matter but one
+    /// at most are far off or beside another, and the point is in front of that one, as for most. Whether that is all
+    /// there is to it. Nothing has come nearer since lists were made than by `nearer`, and faces are looked at that are
+    /// no farther than `reach` (m); `edge` is the length of an edge (m).
+    #[inline]
+    pub fn faced_at_a_glance(
         &self,
-        (now, point, at): (Placed<'_>, &Point, DVec3),
+        (now, point, short): (Placed<'_>, &Point, &Shortlist),
+        (pairs, first): (&Pairs, usize),
+        (nearer, reach, edge): (f64, impl Fn(u32) -> f64, f64),
+        (faced, own): (&mut Faced, &mut Own),
+    ) -> bool {
+        let Some(triangles) = short.triangles() else { return false };
+        let (mut only, mut wakes) = (None, short.wakes);
+        for (number, &triangle) in triangles.iter().enumerate() {
+            let (distance, part) = pairs.distance(first + number);
+            wakes = if distance - nearer < wakes { distance - nearer } else { wakes };
+            let within = [self.depths[triangle as usize], reach(triangle)];
+            if distance > within[0] && distance > within[1] {
+                continue;
+            }
+            if part != 0.0 && distance > ON_IT * edge {
+                let part = part as usize;
+                let is_beside = self.is_beside(triangles, (pairs, first), (number, part))
+                    || self.goes_on_nearer((now.places, pairs.place(first)), (triangle, part), NEARER * distance);
+                if !is_beside {
+                    return false;
+                }
+                continue;
+            }
+            if only.is_some() {
+                return false;
+            }
+            only = Some((number, within));
+        }
+        (faced.first, faced.second, faced.wakes) = (None, None, wakes);
+        let Some((number, [depth, reach])) = only else { return true };
+        let (found, normal, gap) = pairs.nearest(first + number);
+        // what has no area is no number away along its normal
+        if !(gap >= -depth && gap <= reach) || normal == DVec3::ZERO {
+            return true;
+        }
+        let is_turned_away = match point.triangle {
+            Some(triangle) => normal.dot(own.normal(self, now, triangle)) < TURNED_AWAY,
+            None => short.is_turned_away(number) || self.all_turned_away(now, point.nodes[0], normal),
+        };
+        if is_turned_away {
+            let OnTriangle { at, weights, .. } = found;
+            faced.first = Some(Facing { triangle: triangles[number], weights, at, normal, gap });
+        }
+        // of a node its own normal may have it otherwise
+        is_turned_away || point.triangle.is_some()
+    }
+
+    /// Whether one of the triangles of a shortlist shows that the surface around the nearest place of another goes on
+    /// nearer.
+    #[inline]
+    fn is_beside(&self, triangles: &[u32], (pairs, first): (&Pairs, usize), (number, part): (usize, usize)) -> bool {
+        let (triangle, farthest) = (triangles[number], NEARER * pairs.distance(first + number).0);
+        triangles.iter().enumerate().any(|(place, &other)| {
+            place != number && pairs.distance(first + place).0 < farthest && self.shares_part(other, triangle, part)
+        })
+    }
+
+    /// Whether any triangle that shares a part of one is nearer to a place than a distance (m): those that do are not
+    /// all in shortlists.
+    fn goes_on_nearer(&self, (places, at): (&[DVec3], DVec3), (triangle, part): (u32, usize), distance: f64) -> bool {
+        let mut others = self.around_part(triangle, part).filter(|&other| other != triangle);
+        others.any(|other| at.distance(OnTriangle::nearest(at, self.corners(places, other)).at) < distance)
+    }
+
+    /// What a point faces among the triangles of its list that are no farther than `reach` (m), and which of them
+    /// matter as long as nodes move no farther than a shortlist allows for; where that is known, the others are not
+    /// looked at.
+    /// `edge` is the length of an edge (m).
+    #[inline(never)] // all points would make room for what few need
+    pub fn faced(
+        &self,
+        (now, point): (Placed<'_>, &Point),
         listed: Listed<'_>,
         (reach, edge): (impl Fn(u32) -> f64, f64),
         (short, stays): (&mut Shortlist, Stays),
         (faced, kept): (&mut Faced, &mut Kept),
     ) {
-        let places = short.places();
-        let mut candidates = Candidates::new((self, now), at, listed, edge, kept);
-        if let Some(places) = places {
-            candidates.find(places.iter().map(|&place| usize::from(place)));
-            faced.wakes = short.wakes;
-            if places.len() > 1 && self.face_at_a_glance((now, point, at), (&candidates, short), &reach, faced) {
-                return;
-            }
-        }
+        let Kept { nearest, around } = kept;
+        let mut candidates = Candidates::new((self, now), point.place(now.places), listed, edge, nearest);
         let mut way = Way { surfaces: self, now, point, edge, own: None, waiting: None, faced: [None; 2] };
         let mut wakes = f64::INFINITY;
-        let mut look = |candidates: &Candidates<'_, '_>, number: usize, place: usize| {
-            if listed.is_far(place) {
-                wakes = wakes.min(listed.distances[place]);
-                return;
-            }
-            let triangle = listed.triangles[place];
+        let mut look = |candidates: &Candidates<'_, '_>, number: usize, triangle: u32| {
             let &(found, distance) = candidates.nearest(number);
             // both have moved since the list was made
             wakes = wakes.min(distance - listed.nearer);
@@ -114,119 +173,41 @@ impl Surfaces {
                 _ => {}
             }
         };
-        match places {
-            Some(places) => {
-                let places = places.iter().map(|&place| usize::from(place));
-                places.enumerate().for_each(|(number, place)| look(&candidates, number, place));
+        match short.triangles() {
+            Some(triangles) => {
+                triangles.iter().for_each(|&triangle| candidates.find(triangle));
+                triangles.iter().enumerate().for_each(|(number, &triangle)| look(&candidates, number, triangle));
             }
             None => {
-                candidates.find(0..listed.triangles.len());
-                (0..listed.triangles.len()).for_each(|place| look(&candidates, place, place));
+                candidates.find_listed();
                 let away = |place: usize| candidates.stays_away(place, reach(listed.triangles[place]), stays);
                 let nearest = |place: usize| match listed.is_far(place) {
                     true => listed.distances[place],
                     false => candidates.nearest(place).1 - listed.nearer,
                 };
+                around.clear();
+                if point.triangle.is_none() {
+                    let of = |&own: &u32| (self.normal_now(now, own), self.turns(now, own, stays.moved));
+                    around.extend(self.around(point.nodes[0]).iter().map(of));
+                }
                 let turned = |place: usize| {
-                    point.triangle.is_none() && self.stays_turned_away(now, point, listed.triangles[place], stays.moved)
+                    let triangle = listed.triangles[place];
+                    let (normal, turn) = (self.normal_now(now, triangle), self.turns(now, triangle, stays.moved));
+                    let stays_so = |(own, of_own): &(DVec3, f64)| own.dot(normal) < -(of_own + turn + of_own * turn);
+                    point.triangle.is_none() && around.iter().all(stays_so)
                 };
-                *short = Shortlist::of(listed.triangles.len(), away, nearest, turned);
+                *short = Shortlist::of(listed.triangles, away, nearest, turned);
+                // what stays away is in nobody's way now
+                for (place, triangle) in listed.triangles.iter().enumerate() {
+                    if !listed.is_far(place) && short.triangles().is_none_or(|left| left.contains(triangle)) {
+                        look(&candidates, place, *triangle);
+                    }
+                }
+                wakes = (0..listed.triangles.len()).map(nearest).fold(wakes, f64::min);
             }
         }
         let [first, second] = way.finish();
         *faced = Faced { first, second, wakes: wakes.min(short.wakes) };
-    }
-
-    /// The same of a point with one triangle that matters, at a place in its list, as most have, where it is in front
-    /// of that or far off: nothing is to be chosen then. Whether that is all there is to it.
-    #[inline(always)] // as below
-    fn face_alone(
-        &self,
-        of: (Placed<'_>, &Point, DVec3),
-        listed: Listed<'_>,
-        (place, turned): (usize, bool),
-        (reach, edge): (&impl Fn(u32) -> f64, f64),
-        faced: &mut Faced,
-    ) -> bool {
-        if listed.is_far(place) {
-            faced.wakes = faced.wakes.min(listed.distances[place]);
-            return true;
-        }
-        let (triangle, (now, _, at)) = (listed.triangles[place], of);
-        let found = OnTriangle::nearest(at, self.corners(now.places, triangle));
-        let (distance, depth, reach) = (at.distance(found.at), self.depths[triangle as usize], reach(triangle));
-        faced.wakes = (distance - listed.nearer).min(faced.wakes);
-        if distance > reach && distance > depth {
-            return true;
-        }
-        if found.part != 0 && distance > ON_IT * edge {
-            return false;
-        }
-        self.face_only(of, (triangle, &found, turned), [depth, reach], faced)
-    }
-
-    /// The same where all triangles that matter but one at most are far off or beside another, and the point is in
-    /// front of that one. Whether that is all there is to it.
-    fn face_at_a_glance(
-        &self,
-        of: (Placed<'_>, &Point, DVec3),
-        (candidates, short): (&Candidates<'_, '_>, &Shortlist),
-        reach: &impl Fn(u32) -> f64,
-        faced: &mut Faced,
-    ) -> bool {
-        let (listed, mut only) = (candidates.listed, None);
-        for (number, place) in short.places().unwrap_or_default().iter().map(|&place| usize::from(place)).enumerate() {
-            if listed.is_far(place) {
-                faced.wakes = faced.wakes.min(listed.distances[place]);
-                continue;
-            }
-            let (triangle, nearest) = (listed.triangles[place], candidates.nearest(number));
-            faced.wakes = faced.wakes.min(nearest.1 - listed.nearer);
-            let is_far = nearest.1 > reach(triangle) && nearest.1 > self.depths[triangle as usize];
-            let is_before = candidates.is_before(nearest);
-            if is_far || !is_before && candidates.is_beside(triangle, nearest) {
-                continue;
-            }
-            if only.is_some() || !is_before {
-                return false;
-            }
-            only = Some((triangle, &nearest.0, short.is_turned_away(number)));
-        }
-        match only {
-            None => true,
-            Some(only) => {
-                let within = [self.depths[only.0 as usize], reach(only.0)];
-                self.face_only(of, only, within, faced)
-            }
-        }
-    }
-
-    /// Faces the only triangle that is in a point's way, which it is in front of, if these look at each other. Whether
-    /// that is known of a node without its own normal.
-    #[inline(always)] // what it is told goes through memory otherwise, which takes as long as all it does
-    fn face_only(
-        &self,
-        (now, point, at): (Placed<'_>, &Point, DVec3),
-        (triangle, found, turned): (u32, &OnTriangle, bool),
-        [depth, reach]: [f64; 2],
-        faced: &mut Faced,
-    ) -> bool {
-        let normal = now.normals[triangle as usize];
-        if normal == DVec3::ZERO || !found.at.is_finite() {
-            return true;
-        }
-        let gap = (at - found.at).dot(normal);
-        if !(gap >= -depth && gap <= reach) {
-            return true;
-        }
-        let is_turned_away = match point.triangle {
-            Some(own) => normal.dot(now.normals[own as usize]) < TURNED_AWAY,
-            None => turned || self.all_turned_away(now, point.nodes[0], normal),
-        };
-        if is_turned_away {
-            faced.first = Some(Facing { triangle, weights: found.weights, at: found.at, normal, gap });
-        }
-        is_turned_away || point.triangle.is_some()
     }
 
     /// Whether two faces are walls of a corner that the point is in: the second rises before the first. A node on an
@@ -241,25 +222,18 @@ impl Surfaces {
         first.normal.dot(second.normal) < CORNER && rises()
     }
 
-    /// Whether a triangle stays turned away from all around a node, as long as no two nodes move against each other by
-    /// more than a distance m: the unit normal of one with sides a, b and area A changes by 2 m (a + b + m)/2A at most.
-    fn stays_turned_away(&self, now: Placed<'_>, point: &Point, triangle: u32, moved: f64) -> bool {
-        let turns = |triangle: u32| {
-            let [a, b, c] = self.corners(now.places, triangle);
-            let (one, other) = (b - a, c - a);
-            2.0 * moved * (one.length() + other.length() + moved) / one.cross(other).length()
-        };
-        let (normal, turn) = (now.normals[triangle as usize], turns(triangle));
-        self.around(point.nodes[0]).iter().all(|&own| {
-            let of_own = turns(own);
-            now.normals[own as usize].dot(normal) < -(of_own + turn + of_own * turn)
-        })
+    /// By how much the unit normal of a triangle with sides a, b and area A changes at most, as long as no two nodes
+    /// move against each other by more than a distance m: 2 m (a + b + m)/2A.
+    fn turns(&self, now: Placed<'_>, triangle: u32, moved: f64) -> f64 {
+        let [a, b, c] = self.corners(now.places, triangle);
+        let (one, other) = (b - a, c - a);
+        2.0 * moved * (one.length() + other.length() + moved) / one.cross(other).length()
     }
 
     /// Whether a direction is turned away from the normals of all triangles around a node: then it is from the node's
     /// own, which lies between them.
     fn all_turned_away(&self, now: Placed<'_>, node: u32, normal: DVec3) -> bool {
-        self.around(node).iter().all(|&triangle| now.normals[triangle as usize].dot(normal) <= 0.0)
+        self.around(node).iter().all(|&triangle| self.normal_now(now, triangle).dot(normal) <= 0.0)
     }
 }
 
@@ -292,7 +266,7 @@ impl Way<'_> {
     fn choose(&mut self, facing: Facing) {
         let Self { surfaces, now, point, edge, .. } = *self;
         let own = *self.own.get_or_insert_with(|| match point.triangle {
-            Some(triangle) => now.normals[triangle as usize],
+            Some(triangle) => surfaces.normal_now(now, triangle),
             None => surfaces.normal_of_node(now, point.nodes[0]),
         });
         let turned = facing.normal.dot(own);
@@ -333,4 +307,4 @@ impl Way<'_> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -1,7 +1,9 @@
 //! The law of contact between bodies: the impulses that keep predicted steps from ending inside one another.
 
+use super::parts::Parts;
 use crate::backend::cpu::Cpu;
-use glam::DVec3;
+use glam::{DVec3, DVec4};
+use tasks::{Begin, Correct, Correction, Forces, Note, Push};
 
 /// Contacts and nodes that a task works on.
 const CONTACTS_A_TASK: usize = 256;
@@ -9,22 +11,21 @@ const CONTACTS_A_TASK: usize = 256;
 /// So many contacts are worth the threads; fewer are added up one after the other.
 const WORTH_SHARING: usize = 1024;
 
-/// Nodes of a contact: at most four of the point's and four of the face's.
-const MOST: usize = 8;
+/// What is no gain of energy, as a share of what contacts give and take.
+const ROUNDING: f64 = 1e-9;
 
 /// A point and what it faces.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact {
-    /// Places in [`ContactSet::steps`], the first [`count`](Self::count) of them.
-    pub nodes: [u32; MOST],
-    /// Their signed weights: positive of the point's nodes, negative of the face's.
-    pub weights: [f64; MOST],
-    /// How many.
-    pub count: usize,
+    /// Its nodes.
+    pub parts: Parts,
     /// The unit normal, from the face to the point.
     pub normal: DVec3,
     /// The gap (m) before the step, where it is negative no more than may be pushed out in a step.
     pub gap: f64,
+    /// The point's step against the face (m): as it would be, and after [`ContactSet::solve`] as it will be where the
+    /// contact presses.
+    pub step: DVec3,
     /// The largest tangential part of a normal force.
     pub friction: f64,
     /// How far the point has slipped elastically along the face (m).
@@ -33,6 +34,10 @@ pub struct Contact {
     pub pressing: f64,
     /// The tangential force on it (N).
     pub rubbing: DVec3,
+    /// How far it slides in the step (m), and what its force does in that (J, but for what the lengths of steps make of
+    /// it), by the mean of this step and the one before. Both are found where it presses.
+    pub slid: f64,
+    pub work: f64,
     /// Whether friction does not hold it.
     pub slides: bool,
     /// Whether a spring presses: by the gap alone, whatever the step that is predicted.
@@ -44,18 +49,20 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// Of no nodes yet, along a normal with a gap (m), with a coefficient of friction and the slip (m) so far.
-    pub fn new((normal, gap): (DVec3, f64), (friction, slip): (f64, DVec3)) -> Self {
+    /// Of nodes, along a normal with a gap (m), with the step that is predicted (m), a coefficient of friction and the
+    /// slip (m) so far.
+    pub fn new(parts: Parts, (normal, gap, step): (DVec3, f64, DVec3), (friction, slip): (f64, DVec3)) -> Self {
         Self {
-            nodes: [0; MOST],
-            weights: [0.0; MOST],
-            count: 0,
+            parts,
             normal,
             gap,
+            step,
             friction,
             slip,
             pressing: 0.0,
             rubbing: DVec3::ZERO,
+            slid: 0.0,
+            work: 0.0,
             slides: false,
             springs: false,
             yields: 0.0,
@@ -63,40 +70,31 @@ impl Contact {
         }
     }
 
-    /// Adds a node with its signed weight: positive of the point's, negative of the face's; eight at most.
-    pub fn add(&mut self, node: u32, weight: f64) {
-        if weight != 0.0 && self.count < MOST {
-            (self.nodes[self.count], self.weights[self.count]) = (node, weight);
-            self.count += 1;
-        }
-    }
-
-    /// Its nodes with their weights.
-    pub fn parts(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let count = self.count.min(MOST);
-        self.nodes[..count].iter().zip(&self.weights[..count]).map(|(&node, &weight)| (node as usize, weight))
-    }
-
     /// The force on the point (N).
+    #[inline(always)]
     pub fn force(&self) -> DVec3 {
         self.normal * self.pressing + self.rubbing
     }
 
-    /// The point's step against the face (m).
-    pub fn relative(&self, steps: &[DVec3]) -> DVec3 {
-        self.parts().map(|(node, weight)| steps[node] * weight).sum()
-    }
-
     /// The part of a vector along the surface.
+    #[inline(always)]
     pub fn along(&self, vector: DVec3) -> DVec3 {
         vector - self.normal * vector.dot(self.normal)
     }
 
-    /// Corrects the normal force, and gives by how much (N).
-    fn press(&mut self, steps: &[DVec3]) -> DVec3 {
+    /// Finds the normal force of the step that was predicted, with the shares of nodes; gives it as a vector (N).
+    #[inline(always)]
+    fn begin(&mut self, shares: &[f64], responses: &[DVec4]) -> DVec3 {
+        self.find_yields(shares, responses);
+        self.press(self.step)
+    }
+
+    /// Corrects the normal force by a step of the point against the face (m), and gives by how much (N).
+    #[inline(always)]
+    fn press(&mut self, step: DVec3) -> DVec3 {
         let (gap, before) = match self.springs {
             true => (self.gap, 0.0),
-            false => (self.gap + self.normal.dot(self.relative(steps)), self.pressing),
+            false => (self.gap + self.normal.dot(step), self.pressing),
         };
         let pressing = if self.yields > 0.0 { (before - gap / self.yields).max(0.0) } else { 0.0 };
         let change = self.normal * (pressing - self.pressing);
@@ -105,12 +103,13 @@ impl Contact {
     }
 
     /// Corrects the tangential force, and gives by how much (N).
-    fn rub(&mut self, steps: &[DVec3]) -> DVec3 {
+    #[inline(always)]
+    fn rub(&mut self, steps: &[DVec4]) -> DVec3 {
         let presses = self.pressing > 0.0 || self.rubbing != DVec3::ZERO;
         if self.friction <= 0.0 || self.yields_along <= 0.0 || !presses {
             return DVec3::ZERO;
         }
-        let slip = self.along(self.slip + self.relative(steps));
+        let slip = self.along(self.slip + self.parts.step(steps));
         let wanted = self.along(self.rubbing) - slip / self.yields_along;
         let (bound, size) = (self.friction * self.pressing, wanted.length());
         self.slides = size > bound;
@@ -120,23 +119,34 @@ impl Contact {
         change
     }
 
-    /// Notes how far it has slipped elastically, now that forces are known.
-    fn note_slip(&mut self, steps: &[DVec3]) {
-        if self.pressing <= 0.0 || self.friction <= 0.0 {
+    /// Notes where the point goes, what its force does, and how far it has slipped elastically, now that forces are
+    /// known.
+    #[inline(always)]
+    fn note(&mut self, steps: &[DVec4], earlier: &[DVec4]) {
+        if self.pressing <= 0.0 {
             self.slip = DVec3::ZERO;
             return;
         }
-        let slip = self.along(self.slip + self.relative(steps));
+        self.step = self.parts.step(steps);
+        self.work = self.force().dot(0.5 * (self.parts.step(earlier) + self.step));
+        self.slid = if self.slides { self.along(self.step).length() } else { 0.0 };
+        if self.friction <= 0.0 {
+            self.slip = DVec3::ZERO;
+            return;
+        }
+        let slip = self.along(self.slip + self.step);
         let (bound, size) = (self.friction * self.pressing * self.yields_along, slip.length());
         self.slip = if size > bound { slip * (bound / size) } else { slip };
     }
 
     /// Finds how far it yields to forces, from the shares of nodes.
-    fn find_yields(&mut self, shares: &[f64], responses: &[DVec3]) {
+    #[inline(always)]
+    fn find_yields(&mut self, shares: &[f64], responses: &[DVec4]) {
         let (mut along_normal, mut largest) = (0.0, 0.0);
-        for (node, weight) in self.parts() {
-            let (share, response) = (weight.abs() * shares[node], responses[node]);
-            along_normal += share * self.normal.dot(response * self.normal);
+        let ((nodes, weights), normal) = (self.parts.slices(), self.normal.extend(0.0));
+        for (&node, weight) in nodes.iter().zip(weights) {
+            let (share, response) = (weight.abs() * shares[node as usize], responses[node as usize]);
+            along_normal += share * normal.dot(response * normal);
             largest += share * response.max_element();
         }
         (self.yields, self.yields_along) = (along_normal, largest);
@@ -146,14 +156,17 @@ impl Contact {
 /// Contacts that act in the same step, and the nodes they act on.
 #[derive(Clone, Debug, Default)]
 pub struct ContactSet {
-    /// The contacts.
+    /// The contacts. Those that [`solve`](Self::solve) is to find forces of are [added](Self::add).
     pub contacts: Vec<Contact>,
-    /// The nodes' next steps (m): as they would be, and after [`solve`](Self::solve) as they will be.
-    pub steps: Vec<DVec3>,
+    /// The nodes' next steps (m): as they would be, and after [`solve`](Self::solve) as they will be. Of each vector of
+    /// a node the fourth number is 0: so it fills a register.
+    pub steps: Vec<DVec4>,
     /// What they were in the step before (m).
-    pub earlier: Vec<DVec3>,
+    pub earlier: Vec<DVec4>,
     /// How far a node goes for a force along each axis (m/N); 0 where it is held.
-    pub responses: Vec<DVec3>,
+    pub responses: Vec<DVec4>,
+    /// The forces on nodes (N) that [`solve`](Self::solve) or [`find_forces`](Self::find_forces) has found.
+    pub forces: Vec<DVec4>,
     /// Into how many shares each node's mass is split.
     shares: Vec<f64>,
     /// What a sweep changes of each contact's force (N).
@@ -165,20 +178,28 @@ pub struct ContactSet {
 }
 
 impl ContactSet {
-    /// Forgets contacts and nodes.
+    /// Forgets all contacts.
     pub fn clear(&mut self) {
         self.contacts.clear();
-        self.steps.clear();
-        self.earlier.clear();
-        self.responses.clear();
+        self.shares.clear();
+    }
+
+    /// Adds a contact of nodes whose steps are there, and splits their mass.
+    #[inline]
+    pub fn add(&mut self, contact: Contact) {
+        if self.shares.len() < self.steps.len() {
+            self.shares.resize(self.steps.len(), 0.0);
+        }
+        contact.parts.iter().for_each(|(node, weight)| self.shares[node] += weight.abs());
+        self.contacts.push(contact);
     }
 
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
-        let Self { contacts, steps, earlier, responses, shares, changes, starts, of_nodes } = self;
+        let Self { contacts, steps, earlier, responses, forces, shares, changes, starts, of_nodes } = self;
         let of_contacts = size_of_val(&contacts[..]) + size_of_val(&changes[..]) + size_of_val(&of_nodes[..]);
-        let vectors = size_of_val(&steps[..]) + size_of_val(&earlier[..]) + size_of_val(&responses[..]);
-        of_contacts + vectors + size_of_val(&shares[..]) + size_of_val(&starts[..])
+        let vectors = [steps, earlier, responses, forces].map(|all| size_of_val(&all[..]));
+        of_contacts + vectors.iter().sum::<usize>() + size_of_val(&shares[..]) + size_of_val(&starts[..])
     }
 
     /// Finds the forces.
@@ -192,27 +213,51 @@ impl ContactSet {
     /// with exactly the largest force.
     pub fn solve(&mut self, sweeps: usize, cpu: &Cpu) {
         self.list_nodes(cpu);
-        self.changes.clear();
-        self.changes.resize(self.contacts.len(), DVec3::ZERO);
-        let (shares, responses) = (self.shares(), std::mem::take(&mut self.responses));
+        let (shares, responses) = (std::mem::take(&mut self.shares), std::mem::take(&mut self.responses));
         let rub = self.contacts.iter().any(|contact| contact.friction > 0.0);
         for sweep in 0..sweeps.max(1) {
-            let press = |contact: &mut Contact, steps: &[DVec3]| {
-                if sweep == 0 {
-                    contact.find_yields(&shares, &responses);
-                }
-                contact.press(steps)
-            };
-            self.change(press, &responses, cpu);
+            match sweep {
+                0 => self.begin(&shares, &responses, cpu),
+                _ => self.change(Correction::Pressing, &responses, cpu),
+            }
             if rub {
-                self.change(Contact::rub, &responses, cpu);
+                self.change(Correction::Rubbing, &responses, cpu);
             }
         }
         (self.shares, self.responses) = (shares, responses);
-        let steps = &self.steps;
-        cpu.for_each(self.contacts.chunks_mut(CONTACTS_A_TASK), |contacts| {
-            contacts.iter_mut().for_each(|contact| contact.note_slip(steps));
-        });
+        let (steps, earlier) = (&self.steps, &self.earlier);
+        let tasks = self.contacts.chunks_mut(CONTACTS_A_TASK);
+        cpu.for_each(tasks, |contacts| cpu.dispatch(Note { contacts, steps, earlier }));
+        self.find_forces(cpu);
+    }
+
+    /// Finds what contacts do to nodes, in the order of contacts.
+    pub fn find_forces(&mut self, cpu: &Cpu) {
+        let Self { contacts, steps, forces, .. } = self;
+        forces.clear();
+        forces.resize(steps.len(), DVec4::ZERO);
+        cpu.dispatch(Forces { contacts, forces });
+    }
+
+    /// Kinetic energy (J) that one sweep has given beyond what it can, from contacts as they were `before` that; 0 where
+    /// it has not, but for rounding.
+    ///
+    /// That is at most Σ (g² − (n · r*)²)/(2D) + s²/(2D') over the contacts that press, r* the steps that were
+    /// predicted, s what has slipped elastically: a point that is not inside takes energy, and one that is gives back
+    /// what a spring would hold that is so stiff as to push it out in a step.
+    pub fn beyond_bound(&self, before: &[Contact]) -> f64 {
+        let (mut beyond, mut size) = (0.0, 0.0);
+        for (contact, start) in self.contacts.iter().zip(before).filter(|(of, _)| of.pressing > 0.0) {
+            let given = contact.force().dot(0.5 * (start.step + contact.step));
+            let along = contact.normal.dot(start.step);
+            let [inside, taken] = [start.gap, along].map(|length| length * length / (2.0 * contact.yields));
+            let rubs = contact.rubbing != DVec3::ZERO;
+            let slipped = if rubs { start.slip.length_squared() / (2.0 * contact.yields_along) } else { 0.0 };
+            beyond += given - inside + taken - slipped;
+            size += given.abs() + inside + taken + slipped;
+        }
+        // what is no number is told of
+        if beyond <= ROUNDING * size { 0.0 } else { beyond }
     }
 
     /// Lists contacts by node where there are so many that threads add up what they do: in the order in which one
@@ -224,13 +269,13 @@ impl ContactSet {
             return;
         }
         starts.resize(steps.len() + 1, 0);
-        contacts.iter().for_each(|contact| contact.parts().for_each(|(node, _)| starts[node + 1] += 1));
+        contacts.iter().for_each(|contact| contact.parts.iter().for_each(|(node, _)| starts[node + 1] += 1));
         (0..steps.len()).for_each(|node| starts[node + 1] += starts[node]);
         of_nodes.clear();
         of_nodes.resize(starts[steps.len()] as usize, (0, 0.0));
         // the start of each node runs to its end, which is the next one's start
         for (number, contact) in (0..).zip(&*contacts) {
-            for (node, weight) in contact.parts() {
+            for (node, weight) in contact.parts.iter() {
                 of_nodes[starts[node] as usize] = (number, weight);
                 starts[node] += 1;
             }
@@ -239,43 +284,35 @@ impl ContactSet {
         starts[0] = 0;
     }
 
-    /// Into how many shares the mass of each node is split among its contacts.
-    fn shares(&mut self) -> Vec<f64> {
-        let mut shares = std::mem::take(&mut self.shares);
-        shares.clear();
-        shares.resize(self.steps.len(), 0.0);
-        for contact in &self.contacts {
-            contact.parts().for_each(|(node, weight)| shares[node] += weight.abs());
+    /// Finds normal forces, and corrects the steps of nodes by that. Steps against faces are known, so that of one
+    /// thread each contact is gone to once.
+    fn begin(&mut self, shares: &[f64], responses: &[DVec4], cpu: &Cpu) {
+        if !self.starts.is_empty() {
+            return self.change(Correction::First { shares, responses }, responses, cpu);
         }
-        shares
+        let Self { contacts, steps, .. } = self;
+        cpu.dispatch(Begin { contacts, shares, responses, steps });
     }
 
     /// Corrects forces, and the steps of nodes by that.
-    fn change(
-        &mut self,
-        correct: impl Fn(&mut Contact, &[DVec3]) -> DVec3 + Sync + Send,
-        responses: &[DVec3],
-        cpu: &Cpu,
-    ) {
+    fn change(&mut self, correction: Correction<'_>, responses: &[DVec4], cpu: &Cpu) {
         let Self { contacts, steps, changes, starts, of_nodes, .. } = self;
+        changes.resize(contacts.len(), DVec3::ZERO);
         let now = &*steps;
         let tasks = contacts.chunks_mut(CONTACTS_A_TASK).zip(changes.chunks_mut(CONTACTS_A_TASK));
         cpu.for_each(tasks, |(contacts, changes)| {
-            contacts.iter_mut().zip(changes).for_each(|(contact, change)| *change = correct(contact, now));
+            cpu.dispatch(Correct { correction, contacts, changes, steps: now });
         });
         let changes = &*changes;
         if starts.is_empty() {
-            for (contact, change) in contacts.iter().zip(changes).filter(|(_, change)| **change != DVec3::ZERO) {
-                contact.parts().for_each(|(node, weight)| steps[node] += responses[node] * (*change * weight));
-            }
-            return;
+            return cpu.dispatch(Push { contacts, changes, responses, steps });
         }
         cpu.for_each(steps.chunks_mut(CONTACTS_A_TASK).enumerate(), |(task, steps)| {
             for (node, step) in (task * CONTACTS_A_TASK..).zip(steps) {
                 for &(contact, weight) in &of_nodes[starts[node] as usize..starts[node + 1] as usize] {
                     let change = changes[contact as usize];
                     if change != DVec3::ZERO {
-                        *step += responses[node] * (change * weight);
+                        *step += responses[node] * (change * weight).extend(0.0);
                     }
                 }
             }
@@ -283,5 +320,6 @@ impl ContactSet {
     }
 }
 
+mod tasks;
 #[cfg(test)]
 mod tests;

@@ -11,12 +11,12 @@ const NONE: u8 = u8::MAX;
 pub struct Shortlist {
     /// So much nearer than when the list was made (m) the others must come before they are anything to see.
     pub(super) wakes: f64,
-    /// How many, or [`NONE`].
-    count: u8,
+    /// Their numbers, ascending.
+    triangles: [u32; MOST],
     /// Which of them stay turned away from all around the point, a node: a bit each.
     turned: u16,
-    /// Their places in the list, ascending.
-    places: [u8; MOST],
+    /// How many, or [`NONE`].
+    count: u8,
 }
 
 /// How much may change while a shortlist holds.
@@ -30,36 +30,50 @@ pub struct Stays {
 
 impl Shortlist {
     /// Of a point that has not been looked at.
-    pub const UNKNOWN: Self = Self { wakes: f64::INFINITY, count: NONE, turned: 0, places: [0; MOST] };
+    pub const UNKNOWN: Self = Self { wakes: f64::INFINITY, triangles: [0; MOST], turned: 0, count: NONE };
 
-    /// Without those that stay away, each of which is so far (m), and with which of the others stay turned away.
+    /// Of a list of triangles, without those that stay away, each of which is so far (m), and with which of the others
+    /// stay turned away; all by their places in the list.
     pub(super) fn of(
-        count: usize,
+        triangles: &[u32],
         away: impl Fn(usize) -> bool,
         nearest: impl Fn(usize) -> f64,
         turned: impl Fn(usize) -> bool,
     ) -> Self {
         let mut short = Self { count: 0, ..Self::UNKNOWN };
-        for place in 0..count {
+        for (place, &triangle) in triangles.iter().enumerate() {
             if away(place) {
                 short.wakes = short.wakes.min(nearest(place));
                 continue;
             }
-            let Some(free) = short.places.get_mut(usize::from(short.count)) else { return Self::UNKNOWN };
-            let Ok(place) = u8::try_from(place) else { return Self::UNKNOWN };
-            *free = place;
-            short.turned |= u16::from(turned(usize::from(place))) << short.count;
+            let Some(free) = short.triangles.get_mut(usize::from(short.count)) else { return Self::UNKNOWN };
+            *free = triangle;
+            short.turned |= u16::from(turned(place)) << short.count;
             short.count += 1;
         }
         short
     }
 
-    /// The places, if they are known.
-    pub(super) fn places(&self) -> Option<&[u8]> {
-        self.places.get(..usize::from(self.count))
+    /// Whether it is known.
+    #[inline]
+    pub fn is_known(&self) -> bool {
+        self.count != NONE
+    }
+
+    /// How many they are; none where they are not known.
+    #[inline]
+    pub fn count(&self) -> usize {
+        self.triangles().map_or(0, <[u32]>::len)
+    }
+
+    /// The triangles, if they are known.
+    #[inline]
+    pub(super) fn triangles(&self) -> Option<&[u32]> {
+        self.triangles.get(..usize::from(self.count))
     }
 
     /// Whether the one of that number stays turned away from all around the point, a node.
+    #[inline]
     pub(super) fn is_turned_away(&self, number: usize) -> bool {
         self.turned >> number & 1 == 1
     }

@@ -29,7 +29,7 @@ pub struct Surfaces {
 pub struct Placed<'a> {
     /// Of each node (m).
     pub places: &'a [DVec3],
-    /// Of each triangle; zero of one without area.
+    /// Of each triangle; zero of one without area. Empty where they are found one by one as they are asked for.
     pub normals: &'a [DVec3],
 }
 
@@ -62,12 +62,14 @@ impl Point {
     }
 
     /// Its nodes and their weights.
+    #[inline]
     pub fn slices(&self) -> (&[u32], &[f64]) {
         let count = if self.triangle.is_some() { 4 } else { 1 };
         (&self.nodes[..count], &self.weights[..count])
     }
 
     /// Its nodes with their weights.
+    #[inline]
     pub fn parts(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
         let (nodes, weights) = self.slices();
         nodes.iter().copied().zip(weights.iter().copied())
@@ -76,7 +78,15 @@ impl Point {
     /// Where it is (m).
     #[inline]
     pub fn place(&self, places: &[DVec3]) -> DVec3 {
-        self.parts().map(|(node, weight)| places[node as usize] * weight).sum()
+        if self.triangle.is_none() {
+            return places[self.nodes[0] as usize];
+        }
+        let (nodes, weights) = self.slices();
+        let mut at = DVec3::ZERO;
+        for (&node, &weight) in nodes.iter().zip(weights) {
+            at += places[node as usize] * weight;
+        }
+        at
     }
 }
 
@@ -128,20 +138,27 @@ impl Surfaces {
     }
 
     /// The unit normal of a triangle; zero of one without area.
+    #[inline]
     pub fn normal(&self, places: &[DVec3], triangle: u32) -> DVec3 {
         let [a, b, c] = self.corners(places, triangle);
         (b - a).cross(c - a).normalize_or_zero()
+    }
+
+    /// The same where they may be known.
+    #[inline]
+    pub(super) fn normal_now(&self, now: Placed<'_>, triangle: u32) -> DVec3 {
+        now.normals.get(triangle as usize).copied().unwrap_or_else(|| self.normal(now.places, triangle))
     }
 
     /// The normal of a part of a triangle, as [`OnTriangle::part`](crate::math::OnTriangle) counts them: of a side the
     /// sum of those of both its triangles, of a corner the sum weighted with angles (Bærentzen and Aanæs 2005).
     pub(super) fn normal_of_part(&self, now: Placed<'_>, triangle: u32, part: usize) -> DVec3 {
         match part {
-            0 => now.normals[triangle as usize],
+            0 => self.normal_now(now, triangle),
             1..=3 => {
                 let other = self.adjacent[triangle as usize][part - 1];
-                let of_other = if other == NONE { DVec3::ZERO } else { now.normals[other as usize] };
-                (now.normals[triangle as usize] + of_other).normalize_or_zero()
+                let of_other = if other == NONE { DVec3::ZERO } else { self.normal_now(now, other) };
+                (self.normal_now(now, triangle) + of_other).normalize_or_zero()
             }
             corner => self.normal_of_node(now, self.triangles[triangle as usize][(corner - 4).min(2)]),
         }
@@ -185,7 +202,7 @@ impl Surfaces {
             let corners = self.triangles[triangle as usize];
             let place = corners.iter().position(|&corner| corner == node).unwrap_or(0);
             let [b, c] = [1, 2].map(|next| now.places[corners[(place + next) % 3] as usize] - at);
-            now.normals[triangle as usize] * angle(b.cross(c).length(), b.dot(c))
+            self.normal_now(now, triangle) * angle(b.cross(c).length(), b.dot(c))
         };
         self.around(node).iter().map(of_triangle).sum::<DVec3>().normalize_or_zero()
     }

@@ -4,6 +4,7 @@
 mod broadcast;
 mod eigen;
 mod elementary;
+mod extremes;
 mod noise;
 mod polar;
 mod real;
@@ -18,9 +19,11 @@ pub use simd::SimdScalar;
 pub use tensor::{Mat3, Sym3};
 
 // what the engine, the crates on top and tests see beside: no version keeps their names and types
+pub(crate) use extremes::{Extremes, ROUNDING, See};
 pub(crate) use noise::noise;
 pub(crate) use polar::Polar;
 pub(crate) use real::vector_at;
+pub(crate) use triangle::Nearest;
 #[doc(hidden)]
 pub use real::{Task, refine_inverse_cbrt};
 #[doc(hidden)]

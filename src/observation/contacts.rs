@@ -42,6 +42,17 @@ pub fn read_contact(world: &mut World, body: Entity) -> Result<Option<ContactRea
     Ok(Some(reading))
 }
 
+/// That contact between bodies gave energy that its law cannot give, and how much (J), where it did.
+pub(super) fn beyond_bound(world: &World) -> Option<(String, f64)> {
+    let gain = world.get_resource::<ContactGain>()?;
+    let what = format!(
+        "contact between bodies gave {:.3e} J more than its law can, in {} steps that were looked at",
+        gain.energy, gain.steps
+    );
+    // what is no number is told of
+    (gain.energy != 0.0).then_some((what, gain.energy))
+}
+
 /// What contact has taken since the start (J): impact and friction where bodies touch each other and themselves, and
 /// what tools lose, to catching nodes too; the sum of what [`read_contact`] and [`read_tool`](super::read_tool) tell.
 /// `None` where nothing may touch.

@@ -17,6 +17,7 @@ const INVERTED: &str = "a load or motion too large or too sudden for the mesh (u
                         material what becomes of such elements), or a time step that is too large (lower integration.safety)";
 const OVERFLOW: &str = "a motion, load or modulus beyond what numbers can express, or a time step that is too large (lower \
                         integration.safety)";
+const MADE_BY_CONTACT: &str = "an error of the engine, which is worth a report with the scene";
 /// Parts that hold less than this share of all energy are not asked for their hourglass energy.
 const WORTH_CHECKING: f64 = 1e-3;
 /// Shares of hourglass energy are told up to this one: elastic energy may be next to none.
@@ -164,6 +165,12 @@ pub(super) fn check_balance(
     }
     let (scale, rounding, passed) = (memory.scale, memory.rounding, memory.in_doubt.is_none());
     world.insert_resource(memory);
+    if let Some((what, value)) = super::contacts::beyond_bound(world) {
+        let criterion = Criterion { value: Some(value), limit: Some(0.0), ..Criterion::of("contact") };
+        let body = bodies(world);
+        let broken = instability(world, settings, body, what, MADE_BY_CONTACT, criterion, good_until);
+        return Err(Error::Unstable(Box::new(broken)));
+    }
     let stop = settings.limits.energy.stop;
     if made <= stop * scale + rounding || settings.foreign {
         return Ok(passed);

@@ -126,6 +126,8 @@ impl Simulation {
         let foreign = keeping.written.iter().any(|name| *name != external);
         world.insert_resource(keeping);
         world.insert_resource(GuardMemory::default());
+        world.insert_resource(SurfaceSleep::default());
+        world.insert_resource(ContactGain::default());
         if world.resource::<Clock>().relaxation.is_none() {
             crate::observation::begin_to_guard(&mut world)?;
         }
@@ -301,8 +303,18 @@ fn entries(
         let systems = pass.systems.clone();
         let reads = each_once(plan.systems_of(pass).flat_map(|system| &system.reads).copied());
         let finds_forces = plan.systems_of(pass).any(|system| system.finds_forces);
-        let (time, runs) = (Duration::ZERO, 0);
-        entries.push(ScheduledPass { name, phase, finds_forces, systems, job, reads, before_steps, time, runs });
+        entries.push(ScheduledPass {
+            name,
+            phase,
+            finds_forces,
+            systems,
+            job,
+            reads,
+            sleepers: pass.sleepers,
+            before_steps,
+            time: Duration::ZERO,
+            runs: 0,
+        });
     }
     entries
 }

@@ -147,6 +147,8 @@ struct ScheduledPass {
     job: Job,
     /// Names of the columns that its systems read.
     reads: Vec<&'static str>,
+    /// How many passes after it may sleep: see [`plan::Pass::sleepers`].
+    sleepers: usize,
     /// What it needs before steps are submitted to a GPU.
     before_steps: Option<crate::systems::BeforeSteps>,
     time: Duration,

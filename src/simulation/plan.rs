@@ -60,8 +60,11 @@ pub(super) struct Pass {
     /// Places in [`Plan::systems`], in the order in which they run.
     pub systems: Vec<usize>,
     /// Systems that nodes inside patches go through at once, and the others only in passes to come: what is between
-    /// concerns nodes that are inside no patch.
+    /// concerns nodes of surfaces.
     pub ahead: Vec<usize>,
+    /// How many passes there are between if all of them may sleep, else none: in steps in which they do, all nodes go
+    /// through the systems ahead at once, and neither those passes nor the one to come is run.
+    pub sleepers: usize,
     /// What of it a step repeats: on a GPU those of its kernels that say so, on the CPU its system by itself.
     pub repeat: Option<Repeat>,
 }
@@ -83,7 +86,7 @@ pub(super) enum Over {
     /// Patches of elements, whose forces the first system finds; nodes inside a patch go through the other systems
     /// while they are in the core's cache, all others afterwards.
     Elements,
-    /// Nodes that are inside no patch.
+    /// Nodes that have not moved with a patch.
     Shared,
 }
 
@@ -129,6 +132,7 @@ impl Plan {
                 repeat: grouping.repeat(&systems, world),
                 systems,
                 ahead: Vec::new(),
+                sleepers: 0,
             };
             let passes = groups.into_iter().map(pass).collect();
             if fuse && !on_gpu { grouping.ahead(passes, world) } else { passes }

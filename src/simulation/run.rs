@@ -200,12 +200,16 @@ impl Simulation {
         self.world.insert_resource(Observed(self.facts.custom || due == step + 1));
         self.evaluate_signals(step);
         let mut moved = false;
-        for entry in &mut self.entries {
+        let mut left = &mut self.entries[..];
+        while let Some((entry, others)) = left.split_first_mut() {
             if after_the_step(entry.phase) && !moved {
                 self.world.resource_mut::<Clock>().step = step + 1;
                 moved = true;
             }
+            let asleep = entry.sleepers > 0 && all_sleep(&mut others[..entry.sleepers], step, &mut self.world)?;
             entry.run_on_host(step, &mut self.world)?;
+            // these are left out, and the pass that would move the nodes
+            left = if asleep { &mut others[entry.sleepers + 1..] } else { others };
         }
         self.world.resource_mut::<Clock>().step = step + 1;
         self.keep_what_is_due()
@@ -320,6 +324,20 @@ impl Simulation {
         let size = records.len() / count as usize;
         self.world.resource_mut::<Device>().run(kernels, &records, size, count as u32)
     }
+}
+
+/// Asks passes whether they do something in this step, before any force is known.
+fn all_sleep(passes: &mut [ScheduledPass], step: u64, world: &mut World) -> Result<bool, Error> {
+    world.insert_resource(SurfaceSleep { asked: true, asleep: true });
+    let answered = passes.iter_mut().try_for_each(|pass| pass.run_on_host(step, world));
+    let asleep = world.resource::<SurfaceSleep>().asleep;
+    world.insert_resource(SurfaceSleep { asked: false, asleep });
+    answered?;
+    if !asleep {
+        // who answers and then does something has run once
+        passes.iter_mut().for_each(|pass| pass.runs -= 1);
+    }
+    Ok(asleep)
 }
 
 impl ScheduledPass {

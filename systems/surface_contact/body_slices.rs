@@ -44,10 +44,6 @@ pub(super) fn slices<'a, T: Scalar>(
     contacts: &SurfaceContacts,
     bodies: &'a mut Query<'_, '_, (Entity, MeetingColumns)>,
 ) -> Vec<BodySlices<'a, T>> {
-    let numbers = &contacts.surface.numbers;
-    let number_of = |body: Entity| {
-        numbers.binary_search_by_key(&body, |(entity, _)| *entity).map_or(usize::MAX, |at| numbers[at].1)
-    };
     let mut all: Vec<(usize, BodySlices<'a, T>)> = Vec::with_capacity(contacts.bodies.len());
     for (entity, columns) in bodies {
         let of_body = BodySlices {
@@ -56,7 +52,7 @@ pub(super) fn slices<'a, T: Scalar>(
             touch: columns.touch.into_inner().slice_mut(),
             face_touch: columns.face_touch.map_or(&mut [], |touch| touch.into_inner().slice_mut()),
         };
-        all.push((number_of(entity), of_body));
+        all.push((contacts.surface.number_of(entity), of_body));
     }
     all.retain(|(number, _)| *number < contacts.bodies.len());
     all.sort_by_key(|(number, _)| *number);

@@ -1,11 +1,18 @@
 //! What points face now.
 
+use super::motion::update_normals;
 use super::{Surface, SurfaceContacts};
 use crate::backend::cpu::Cpu;
-use crate::contact::{Faced, Kept, Listed, Placed, Shortlist, Stays};
+use crate::contact::{Faced, Kept, Listed, Own, Pairs, Placed, Shortlist, Stays};
 
-/// Points that a task looks at.
+/// Points that a task looks at, and of how many at once it is found where their triangles are nearest: their numbers
+/// stay in the nearest cache.
 const POINTS_A_TASK: usize = 128;
+const POINTS_AT_ONCE: usize = 32;
+
+/// Where more than one of so many points goes through its list, the normals of all that is near are found beforehand:
+/// else few are asked for.
+const KNOWN: usize = 8;
 
 /// What a point faces.
 #[derive(Clone, Copy, Debug)]
@@ -13,12 +20,39 @@ pub(super) struct Found {
     /// Its place in the lists.
     pub place: u32,
     pub faced: Faced,
-    /// What of its list matters.
-    short: Shortlist,
 }
 
-impl Found {
-    const NONE: Self = Self { place: 0, faced: Faced::NOTHING, short: Shortlist::UNKNOWN };
+/// Room for what a task looks at, so that the next step need not ask for memory.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Room {
+    pairs: Pairs,
+    kept: Kept,
+}
+
+/// Some points that are awake, and what is kept of these in the lists and of those between.
+struct Awake<'a> {
+    found: &'a mut [Found],
+    /// The first place of the next two.
+    first: usize,
+    shortlists: &'a mut [Shortlist],
+    wake: &'a mut [f64],
+    room: &'a mut Room,
+}
+
+/// What is the same for all points in a step.
+struct Looking<'a> {
+    contacts: &'a SurfaceContacts,
+    cpu: &'a Cpu,
+    now: Placed<'a>,
+    /// How far faces are looked at that a point of a body meets of a body (m), at their numbers as in
+    /// [`SurfaceContacts::meetings`].
+    reaches: &'a [f64],
+    /// How much nearer anything can have come since lists were made (m), and the farthest that is looked at (m).
+    nearer: f64,
+    farthest: f64,
+    /// How far nodes have moved since it was looked last whether shortlists hold, and how much farther faces may be
+    /// looked at (m).
+    stays: Stays,
 }
 
 /// Who is awake: points in the lists that may be near something, as far as nodes have moved since. Whether there are
@@ -36,7 +70,7 @@ pub(super) fn wake(contacts: &mut SurfaceContacts, reach: f64) -> bool {
         // what was found in the last step is written over
         match found.get_mut(awake) {
             Some(found) => found.place = place,
-            None => found.push(Found { place, ..Found::NONE }),
+            None => found.push(Found { place, faced: Faced::NOTHING }),
         }
         awake += 1;
     }
@@ -46,39 +80,81 @@ pub(super) fn wake(contacts: &mut SurfaceContacts, reach: f64) -> bool {
 
 /// Finds what those face that are awake.
 pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
-    let farthest = contacts.farthest(reach);
     let [nearer, lately] = [&contacts.surface.motion.lists, &contacts.surface.motion.shortlists].map(|mark| mark.moved);
-    let mut found = std::mem::take(&mut contacts.surface.found);
-    let mut kept = std::mem::take(&mut contacts.surface.kept_by_task);
-    let tasks = found.len().div_ceil(POINTS_A_TASK);
-    kept.resize_with(kept.len().max(tasks), Kept::default);
+    let surface = &mut contacts.surface;
+    let mut found = std::mem::take(&mut surface.found);
+    let unknown = found.iter().filter(|found| !surface.shortlists[found.place as usize].is_known()).count();
+    let has_normals = KNOWN * unknown > found.len() || !surface.crossings.near.is_empty();
+    if has_normals {
+        update_normals(surface, cpu);
+    }
+    let mut rooms = std::mem::take(&mut surface.rooms);
+    let mut reaches = std::mem::take(&mut surface.reaches);
+    let mut shortlists = std::mem::take(&mut surface.shortlists);
+    let mut wake = std::mem::take(&mut surface.wake);
+    rooms.resize_with(rooms.len().max(found.len().div_ceil(POINTS_A_TASK)), Room::default);
+    reaches.clear();
+    let meetings = contacts.meetings.iter();
+    reaches.extend(meetings.map(|meeting| reach + meeting.map_or(0.0, |meeting| meeting.thickness)));
+    let stays = Stays { moved: lately, reach: contacts.surface.stays.reach - reach };
+    let farthest = contacts.farthest(reach);
     let surface = &contacts.surface;
-    let now = Placed { places: &surface.places, normals: &surface.normals };
-    // what has moved so far may move back, too
-    let stays = Stays { moved: surface.stays.moved + lately, reach: surface.stays.reach - reach };
-    cpu.for_each(found.chunks_mut(POINTS_A_TASK).zip(&mut kept), |(found, kept)| {
-        for Found { place, faced, short } in found {
-            *short = surface.shortlists[*place as usize];
-            let point = &surface.points[surface.lists.points[*place as usize] as usize];
-            let reach_of = |triangle: u32| {
-                let body = surface.triangles.bodies[triangle as usize];
-                reach + contacts.meeting(point.body, body).map_or(0.0, |meeting| meeting.thickness)
-            };
-            let place = *place as usize;
-            let (triangles, distances) = (surface.lists.triangles(place), surface.lists.distances(place));
-            let listed = Listed { triangles, distances, nearer, farthest };
-            surface.triangles.faced(now, point, listed, (reach_of, contacts.edge), (short, stays), (faced, kept));
-            if point.triangle.is_some() {
-                let both = [&mut faced.first, &mut faced.second];
-                both.into_iter().flatten().for_each(|facing| facing.gap = surface.gap_of_facet(point, facing));
+    let normals = if has_normals { &surface.normals[..] } else { &[] };
+    let now = Placed { places: &surface.places, normals };
+    let looking = Looking { contacts, cpu, now, reaches: &reaches, nearer, farthest, stays };
+    let mut left = (0, &mut shortlists[..], &mut wake[..]);
+    let tasks = found.chunks_mut(POINTS_A_TASK).zip(&mut rooms).map(|(found, room)| {
+        let (first, shortlists, wake) = std::mem::take(&mut left);
+        // places ascend
+        let end = found.last().map_or(first, |last| last.place as usize + 1);
+        let (shortlists, shortlists_left) = shortlists.split_at_mut(end - first);
+        let (wake, wake_left) = wake.split_at_mut(end - first);
+        left = (end, shortlists_left, wake_left);
+        Awake { found, first, shortlists, wake, room }
+    });
+    cpu.for_each(tasks, |awake| looking.face(awake));
+    let surface = &mut contacts.surface;
+    let first = found.iter().map(|found| found.faced.wakes).fold(surface.first_wake, f64::min);
+    (surface.found, surface.rooms, surface.reaches) = (found, rooms, reaches);
+    (surface.shortlists, surface.wake, surface.first_wake) = (shortlists, wake, first);
+}
+
+impl Looking<'_> {
+    /// Finds what some points face.
+    fn face(&self, Awake { found, first, shortlists, wake, room: Room { pairs, kept } }: Awake<'_>) {
+        let Looking { contacts, now, .. } = *self;
+        let (surface, edge, mut own) = (&contacts.surface, contacts.edge, Own::default());
+        for found in found.chunks_mut(POINTS_AT_ONCE) {
+            pairs.clear();
+            for Found { place, .. } in &*found {
+                let point = &surface.points[surface.lists.points[*place as usize] as usize];
+                surface.triangles.ask(now.places, point, &shortlists[*place as usize - first], pairs);
+            }
+            pairs.find(self.cpu);
+            let mut pair = 0;
+            for Found { place, faced } in found {
+                let place = *place as usize;
+                let (point, short) =
+                    (&surface.points[surface.lists.points[place] as usize], &mut shortlists[place - first]);
+                let of_point = &self.reaches[point.body as usize * contacts.bodies.len()..];
+                let reach = |triangle: u32| of_point[surface.triangles.bodies[triangle as usize] as usize];
+                let asked = (&*pairs, pair);
+                pair += short.count();
+                let at_a_glance = (self.nearer, reach, edge);
+                let seen = (&mut *faced, &mut own);
+                if !surface.triangles.faced_at_a_glance((now, point, short), asked, at_a_glance, seen) {
+                    let (triangles, distances) = (surface.lists.triangles(place), surface.lists.distances(place));
+                    let listed = Listed { triangles, distances, nearer: self.nearer, farthest: self.farthest };
+                    let moved = surface.neighbourhoods.stays(place) + self.stays.moved;
+                    let (stays, kept) = (Stays { moved, ..self.stays }, (&mut *faced, &mut *kept));
+                    surface.triangles.faced((now, point), listed, (reach, edge), (short, stays), kept);
+                }
+                if point.triangle.is_some() {
+                    let both = [&mut faced.first, &mut faced.second];
+                    both.into_iter().flatten().for_each(|facing| facing.gap = surface.gap_of_facet(point, facing));
+                }
+                wake[place - first] = faced.wakes;
             }
         }
-    });
-    let surface = &mut contacts.surface;
-    for Found { place, faced, short } in &found {
-        surface.shortlists[*place as usize] = *short;
-        surface.wake[*place as usize] = faced.wakes;
-        surface.first_wake = surface.first_wake.min(faced.wakes);
     }
-    (surface.found, surface.kept_by_task) = (found, kept);
 }

@@ -4,11 +4,11 @@ use super::body_slices::{BodySlices, set_vector, vector_at};
 use super::faced::Found;
 use super::meet::{FACES, FREE, STICKS};
 use super::{Meeting, Surface, SurfaceContacts};
-use crate::backend::cpu::IntegrationCoefficients;
+use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
-use crate::contact::{Contact, ContactSet};
+use crate::contact::{Contact, ContactSet, Parts};
 use crate::math::Scalar;
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 
 /// How far a point that is inside comes out in a step at most, in edges.
 pub(super) const OUT: f64 = 0.1;
@@ -16,6 +16,9 @@ pub(super) const OUT: f64 = 0.1;
 /// Points of faces share their nodes' masses while they are no farther from touching than this, in edges: who shares
 /// stays the same from step to step then, and pressures come to rest.
 const SHARES: f64 = 1e-3;
+
+/// Nodes that a task foresees.
+const NODES_A_TASK: usize = 1024;
 
 /// A contact of the set.
 #[derive(Clone, Copy, Debug)]
@@ -28,22 +31,21 @@ pub(super) struct Met {
 }
 
 /// What is the same for all points in a step.
-pub(super) struct InStep<'a> {
+pub(super) struct InStep {
     /// How far the fastest node went in the last step (m).
     pub largest: f64,
     /// How far points that are inside and may be come out (m).
     pub settling: f64,
-    pub coefficients: &'a IntegrationCoefficients<f64>,
 }
 
-/// The contacts of a step, and what they act on.
+/// The contacts of a step, and what they act on: nodes that are near something.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Gathered {
     pub set: ContactSet,
+    /// Its contacts before it is solved, where somebody looks afterwards.
+    pub before: Vec<Contact>,
     pub met: Vec<Met>,
-    /// Nodes of the set, by their place in it.
-    pub acted_on: Vec<u32>,
-    /// Place of a node in the set, or none.
+    /// Place of each node of the surfaces in the set, of those that are near something.
     pub slots: Vec<u32>,
     /// Points that face something.
     pub facing: Vec<u32>,
@@ -52,64 +54,72 @@ pub(super) struct Gathered {
 impl Gathered {
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
-        let of_nodes = size_of_val(&self.acted_on[..]) + size_of_val(&self.slots[..]);
-        self.set.bytes() + size_of_val(&self.met[..]) + of_nodes + size_of_val(&self.facing[..])
+        let Self { set, before, met, slots, facing } = self;
+        let of_points = size_of_val(&met[..]) + size_of_val(&facing[..]);
+        set.bytes() + size_of_val(&before[..]) + of_points + size_of_val(&slots[..])
     }
 
     pub fn clear(&mut self) {
         self.set.clear();
         self.met.clear();
-        self.acted_on.clear();
         self.facing.clear();
     }
 
-    /// The place in the set of a node of a surface, and where that would go.
-    pub(super) fn slot_of<T: Scalar>(
+    /// Foresees where the nodes would go that are near something: one after the other in the order of their rows, so
+    /// that columns are read as they lie.
+    pub fn foresee<T: Scalar>(
         &mut self,
-        node: u32,
-        (surface, in_step): (&Surface, &InStep<'_>),
+        surface: &Surface,
+        coefficients: &IntegrationCoefficients<f64>,
         bodies: &[BodySlices<'_, T>],
-    ) -> u32 {
-        let slot = &mut self.slots[node as usize];
-        if *slot == u32::MAX {
-            *slot = self.acted_on.len() as u32;
-            let (body, row) = surface.nodes[node as usize];
-            let of_node = bodies[body as usize].foresee(row as usize, in_step.coefficients);
-            self.set.steps.push(of_node.step);
-            self.set.responses.push(of_node.free / of_node.to_force);
-            self.set.earlier.push(of_node.before);
-            self.acted_on.push(node);
+        cpu: &Cpu,
+    ) {
+        let near = &surface.near.nodes;
+        let ContactSet { steps, earlier, responses, .. } = &mut self.set;
+        for all in [&mut *steps, &mut *earlier, &mut *responses] {
+            all.resize(near.len(), DVec4::ZERO);
         }
-        *slot
+        let of_steps = steps.chunks_mut(NODES_A_TASK).zip(earlier.chunks_mut(NODES_A_TASK));
+        let tasks = near.chunks(NODES_A_TASK).zip(of_steps.zip(responses.chunks_mut(NODES_A_TASK)));
+        cpu.for_each(tasks, |(nodes, ((steps, earlier), responses))| {
+            for (((node, step), before), response) in nodes.iter().zip(steps).zip(earlier).zip(responses) {
+                let (body, row) = surface.nodes[*node as usize];
+                let of_node = bodies[body as usize].foresee(row as usize, coefficients);
+                (*step, *before) = (of_node.step.extend(0.0), of_node.before.extend(0.0));
+                *response = (of_node.free / of_node.to_force).extend(0.0);
+            }
+        });
     }
 
-    /// Adds a contact of these nodes with signed weights, if it ends nearer than `within` (m): see [`ends`].
+    /// Adds a contact of these nodes with weights, along a normal with a gap (m) and with friction and slip, if it ends
+    /// nearer than `within` (m): as far outside (m) as that; with a spring, which asks for nothing else, as far as it
+    /// is.
     #[inline]
-    fn add<T: Scalar>(
+    fn add(
         &mut self,
-        (contact, met): (Contact, Met),
         [of_point, of_face]: [(&[u32], &[f64]); 2],
+        ((normal, gap), resists): ((DVec3, f64), (f64, DVec3)),
         (spring, outside, within): (Option<ContactSpring>, f64, f64),
-        of: (&Surface, &InStep<'_>),
-        bodies: &[BodySlices<'_, T>],
+        met: Met,
     ) {
-        // where it stays if it is one: it is too large to be handed about
-        self.set.contacts.push(contact);
-        for ((nodes, weights), sign) in [(of_point, 1.0), (of_face, -1.0)] {
-            // a triangle's corners are four of which the last has no weight
-            for (&node, &weight) in nodes.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
-                let slot = self.slot_of(node, of, bodies);
-                if let Some(contact) = self.set.contacts.last_mut() {
-                    contact.add(slot, sign * weight);
-                }
-            }
+        let Self { set, slots, .. } = self;
+        let mut parts = Parts::default();
+        for (&node, &weight) in of_point.0.iter().zip(of_point.1) {
+            parts.add(slots[node as usize], weight);
         }
-        let ContactSet { contacts, steps, earlier, .. } = &mut self.set;
-        let Some(contact) = contacts.last_mut() else { return };
-        if ends(contact, (spring, outside), [steps, earlier]) < within {
+        for (&node, &weight) in of_face.0.iter().zip(of_face.1) {
+            parts.add(slots[node as usize], -weight);
+        }
+        let step = parts.step(&set.steps);
+        let (gap, ends) = match spring {
+            None => (gap, gap + normal.dot(step)),
+            Some(spring) => (spring.gap(outside, normal.dot(parts.step(&set.earlier))), outside),
+        };
+        if ends < within {
+            let mut contact = Contact::new(parts, (normal, gap, step), resists);
+            contact.springs = spring.is_some();
+            set.add(contact);
             self.met.push(met);
-        } else {
-            contacts.pop();
         }
     }
 }
@@ -117,7 +127,7 @@ impl Gathered {
 /// How deep a point may be inside (m) that is so far outside (m) of what it faces: as deep as it is found there and no
 /// motion has brought it, by and by less. A point that was not seen before (at the start, laid bare, at a corner that
 /// comes round) is not thrown out in a step.
-pub(super) fn allowed<T: Scalar>(touch: &[T], gap: f64, in_step: &InStep<'_>) -> f64 {
+pub(super) fn allowed<T: Scalar>(touch: &[T], gap: f64, in_step: &InStep) -> f64 {
     let expected = match touch[4].to_f64() {
         FREE => 0.0,
         // as deep as any motion may have brought it
@@ -127,13 +137,13 @@ pub(super) fn allowed<T: Scalar>(touch: &[T], gap: f64, in_step: &InStep<'_>) ->
     (touch[3].to_f64() + (gap - expected).min(0.0) + in_step.settling).min(0.0).max(gap.min(0.0))
 }
 
-/// The contacts of a step, and where the nodes would go that they act on; notes what points face, and how far they are
-/// outside of it.
+/// The contacts of a step, of nodes whose steps are foreseen; notes what points face, and how far they are outside of
+/// it.
 pub(super) fn gather<T: Scalar>(
     contacts: &SurfaceContacts,
     gathered: &mut Gathered,
     found: &[Found],
-    in_step: &InStep<'_>,
+    in_step: &InStep,
     bodies: &mut [BodySlices<'_, T>],
 ) {
     let surface = &contacts.surface;
@@ -176,14 +186,10 @@ pub(super) fn gather<T: Scalar>(
             let of_face = (&corners[..], &weights[..]);
             let within = if point.triangle.is_some() { SHARES * contacts.edge } else { 0.0 };
             gathered.add(
-                (
-                    Contact::new((facing.normal, gap), (friction, slip)),
-                    Met { point: number, first: is_first, gap: outside },
-                ),
                 [point.slices(), of_face],
+                ((facing.normal, gap), (friction, slip)),
                 (spring, outside - allowed, within),
-                (surface, in_step),
-                bodies,
+                Met { point: number, first: is_first, gap: outside },
             );
         }
     }
@@ -196,31 +202,13 @@ pub(super) fn gather<T: Scalar>(
         // nothing is known of how it got there, nor of how it slipped
         let gap = outside.max(-in_step.settling);
         let [of_one, of_other] = &crossing.weights;
+        // nodes are the first of the points
+        let met = Met { point: one.nodes[0], first: false, gap: outside };
         gathered.add(
-            (
-                Contact::new((crossing.normal, gap), (friction[1], DVec3::ZERO)),
-                // nodes are the first of the points
-                Met { point: one.nodes[0], first: false, gap: outside },
-            ),
             [(&one.nodes, of_one), (&other.nodes, of_other)],
+            ((crossing.normal, gap), (friction[1], DVec3::ZERO)),
             (spring, outside, 0.0),
-            (surface, in_step),
-            bodies,
+            met,
         );
     }
-}
-
-/// How far outside (m) a point would end that is to be kept there; with a spring how far it is, which is all that that
-/// asks for: so far outside, or more than it may be inside.
-fn ends(
-    contact: &mut Contact,
-    (spring, outside): (Option<ContactSpring>, f64),
-    [steps, earlier]: [&[DVec3]; 2],
-) -> f64 {
-    let Some(spring) = spring else {
-        return contact.gap + contact.normal.dot(contact.relative(steps));
-    };
-    contact.springs = true;
-    contact.gap = spring.gap(outside, contact.normal.dot(contact.relative(earlier)));
-    outside
 }

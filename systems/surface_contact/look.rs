@@ -3,18 +3,12 @@
 use super::body_slices::{BodySlices, vector};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
-use crate::math::Scalar;
+use crate::math::{Extremes, ROUNDING, Scalar, See};
 use glam::DVec3;
 use std::ops::Range;
 
 /// Steps that are added up before it is looked where nodes are.
 const STEPS_ADDED_UP: u32 = 64;
-
-/// Numbers that are compared side by side: whole registers, and whole vectors.
-const SIDE_BY_SIDE: usize = 24;
-
-/// What rounding to f32 takes of a difference at most, and more.
-const ROUNDING: f64 = 1e-6;
 
 /// Where nodes were at some time, and how far they have moved since.
 #[derive(Clone, Debug)]
@@ -100,10 +94,11 @@ impl Motion {
         let mut before = self.watched.iter_mut();
         for runs in self.runs.chunk_by(|a, b| a.0 == b.0) {
             let Some([u, step]) = moving(runs[0].0) else { continue };
-            cpu.dispatch(See { seen: &mut steps, runs, now: step, then: None });
             for ((_, rows), before) in runs.iter().zip(&mut before) {
+                cpu.dispatch(See { seen: &mut steps, now: &step[numbers(rows)], then: None });
                 let [now, went] = [u, step].map(|all| vector(all, rows.start as usize));
-                as_stepped &= now.distance(*before + went) <= ROUNDING * (before.length() + now.length());
+                let size = ROUNDING * ROUNDING * (before.length_squared() + now.length_squared());
+                as_stepped &= now.distance_squared(*before + went) <= size;
                 *before = now;
             }
         }
@@ -121,12 +116,11 @@ impl Motion {
     pub fn look<'a, T: Scalar>(&mut self, moving: &impl Moving<'a, T>, cpu: &Cpu) {
         let see = |then: Option<&[T]>| {
             let (mut seen, mut before) = (Extremes::none(), 0);
-            for runs in self.runs.chunk_by(|a, b| a.0 == b.0) {
-                let count = 3 * runs.iter().map(|(_, rows)| rows.len()).sum::<usize>();
-                let then = then.map(|then| &then[before..before + count]);
-                before += count;
-                let Some([u, _]) = moving(runs[0].0) else { continue };
-                cpu.dispatch(See { seen: &mut seen, runs, now: u, then });
+            for (body, rows) in &self.runs {
+                let then = then.map(|then| &then[before..before + 3 * rows.len()]);
+                before += 3 * rows.len();
+                let Some([u, _]) = moving(*body) else { continue };
+                cpu.dispatch(See { seen: &mut seen, now: &u[numbers(rows)], then });
             }
             seen
         };
@@ -161,102 +155,4 @@ impl Mark {
 /// The numbers of vectors in these rows.
 fn numbers(rows: &Range<u32>) -> Range<usize> {
     3 * rows.start as usize..3 * rows.end as usize
-}
-
-/// The least and the largest of numbers along three axes, axis after axis.
-#[derive(Clone, Copy)]
-struct Extremes<T> {
-    low: [T; SIDE_BY_SIDE],
-    high: [T; SIDE_BY_SIDE],
-}
-
-impl<T: Scalar> Extremes<T> {
-    fn none() -> Self {
-        let far = T::from_f64(f64::from(f32::MAX));
-        Self { low: [far; SIDE_BY_SIDE], high: [-far; SIDE_BY_SIDE] }
-    }
-
-    /// Sees as many numbers as there are, side by side at most. What is no number is not seen here; it is what guards
-    /// look for.
-    #[inline(always)]
-    fn see(&mut self, numbers: &[T; SIDE_BY_SIDE], count: usize) {
-        for i in 0..count {
-            self.low[i] = if numbers[i] < self.low[i] { numbers[i] } else { self.low[i] };
-            self.high[i] = if numbers[i] > self.high[i] { numbers[i] } else { self.high[i] };
-        }
-    }
-
-    /// The least and the largest along each axis; nothing where nothing was seen.
-    fn bounds(&self) -> [DVec3; 2] {
-        let along = |axis: usize, of: &[T; SIDE_BY_SIDE], better: fn(f64, f64) -> f64| {
-            of.iter().skip(axis).step_by(3).map(|number| number.to_f64()).reduce(better).unwrap_or(0.0)
-        };
-        let low = [0, 1, 2].map(|axis| along(axis, &self.low, f64::min));
-        let high = [0, 1, 2].map(|axis| along(axis, &self.high, f64::max));
-        if low[0] > high[0] { [DVec3::ZERO; 2] } else { [low.into(), high.into()] }
-    }
-
-    /// The largest distance between two vectors that were seen (m), and a little more.
-    fn apart(&self) -> f64 {
-        let [low, high] = self.bounds();
-        (high - low).length() * (1.0 + ROUNDING)
-    }
-
-    /// The longest vector that was seen is not longer than this (m).
-    fn longest(&self) -> f64 {
-        let [low, high] = self.bounds();
-        low.abs().max(high.abs()).length() * (1.0 + ROUNDING)
-    }
-}
-
-/// The task of seeing vectors of a body in these rows: as they are, or how they differ from what they were.
-struct See<'a, T> {
-    seen: &'a mut Extremes<T>,
-    runs: &'a [(u32, Range<u32>)],
-    now: &'a [T],
-    then: Option<&'a [T]>,
-}
-
-impl<T: Scalar> See<'_, T> {
-    /// Sees fewer than are seen side by side.
-    #[inline(always)]
-    fn some(seen: &mut Extremes<T>, now: &[T], then: Option<&[T]>) {
-        let (count, mut numbers) = (now.len(), [T::default(); SIDE_BY_SIDE]);
-        numbers[..count].copy_from_slice(now);
-        if let Some(then) = then {
-            (0..count).for_each(|i| numbers[i] -= then[i]);
-        }
-        seen.see(&numbers, count);
-    }
-}
-
-impl<T: Scalar> pulp::WithSimd for See<'_, T> {
-    type Output = ();
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        // in registers
-        let mut seen = *self.seen;
-        let mut before = 0;
-        for (_, rows) in self.runs {
-            let now = &self.now[numbers(rows)];
-            let then = self.then.map(|then| &then[before..before + now.len()]);
-            before += now.len();
-            let (whole, rest) = now.as_chunks::<SIDE_BY_SIDE>();
-            match then.map(|then| then.as_chunks::<SIDE_BY_SIDE>()) {
-                None => {
-                    whole.iter().for_each(|now| seen.see(now, SIDE_BY_SIDE));
-                    Self::some(&mut seen, rest, None);
-                }
-                Some((then, rest_then)) => {
-                    for (now, then) in whole.iter().zip(then) {
-                        let mut moved = *now;
-                        (0..SIDE_BY_SIDE).for_each(|i| moved[i] -= then[i]);
-                        seen.see(&moved, SIDE_BY_SIDE);
-                    }
-                    Self::some(&mut seen, rest, Some(rest_then));
-                }
-            }
-        }
-        *self.seen = seen;
-    }
 }

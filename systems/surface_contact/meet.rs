@@ -7,7 +7,7 @@ use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
 use crate::contact::{Facing, Point, bilinear};
 use crate::math::Scalar;
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 
 /// What a point did in the last step, in [`SurfaceTouch`].
 pub(super) const FREE: f64 = 0.0;
@@ -56,7 +56,10 @@ impl Surface {
     /// quite its triangles, the gap that the step foresees is the one that is found after it, or forces would do work.
     pub(super) fn gap_of_facet(&self, point: &Point, facing: &Facing) -> f64 {
         let (nodes, weights) = self.corners_of(point, facing);
-        let at: DVec3 = nodes.iter().zip(weights).map(|(&node, weight)| self.places[node as usize] * weight).sum();
+        let mut at = DVec3::ZERO;
+        for (&node, weight) in nodes.iter().zip(weights) {
+            at += self.places[node as usize] * weight;
+        }
         facing.normal.dot(point.place(&self.places) - at)
     }
 }
@@ -92,75 +95,72 @@ pub(super) fn forget<T: Scalar>(contacts: &mut SurfaceContacts, now: &[u32], bod
     contacts.surface.touching.extend_from_slice(now);
 }
 
-/// Finds the forces of a step and adds them to the loads.
+/// Finds the forces of a step and adds them to the loads. Where somebody looks after it, it is noted what they give
+/// that they cannot: of one sweep of the kinematic law that is known.
 pub(super) fn meet<T: Scalar>(
     contacts: &mut SurfaceContacts,
     (clock, cpu): (&Clock, &Cpu),
     bodies: &mut [BodySlices<'_, T>],
+    gain: Option<&mut ContactGain>,
 ) {
     let coefficients = IntegrationCoefficients::<f64>::of(clock);
     let found = std::mem::take(&mut contacts.surface.found);
     let mut gathered = std::mem::take(&mut contacts.surface.gathered);
     release(&mut contacts.surface, bodies);
     gathered.clear();
-    let in_step = InStep {
-        largest: contacts.surface.motion.largest,
-        settling: contacts.settling(clock),
-        coefficients: &coefficients,
-    };
+    gathered.foresee(&contacts.surface, &coefficients, bodies, cpu);
+    let in_step = InStep { largest: contacts.surface.motion.largest, settling: contacts.settling(clock) };
     gather(contacts, &mut gathered, &found, &in_step, bodies);
     forget(contacts, &gathered.facing, bodies);
+    let is_known = clock.relaxation.is_none() && contacts.sweeps <= 1;
+    let gain = gain.filter(|_| is_known && !gathered.set.contacts.iter().any(|contact| contact.springs));
+    if gain.is_some() {
+        gathered.before.clone_from(&gathered.set.contacts);
+    }
     gathered.set.solve(contacts.sweeps, cpu);
+    if let Some(gain) = gain {
+        gain.steps += 1;
+        gain.energy += coefficients.work_factor * gathered.set.beyond_bound(&gathered.before);
+    }
     let work_factor = clock.relaxation.is_none().then_some(coefficients.work_factor);
     note_touches(contacts, &gathered, work_factor, bodies);
-    push(contacts, &gathered.acted_on, bodies);
-    gathered.acted_on.iter().for_each(|&node| gathered.slots[node as usize] = u32::MAX);
+    push(contacts, &gathered.set.forces, bodies);
     (contacts.surface.gathered, contacts.surface.found) = (gathered, found);
 }
 
-/// Notes what contacts came to, and finds the forces on nodes, in the order of contacts.
+/// Notes what contacts came to.
 fn note_touches<T: Scalar>(
     contacts: &mut SurfaceContacts,
     Gathered { set, met, .. }: &Gathered,
     work_factor: Option<f64>,
     bodies: &mut [BodySlices<'_, T>],
 ) {
-    let mut forces = std::mem::take(&mut contacts.surface.forces);
-    forces.clear();
-    forces.resize(set.steps.len(), DVec3::ZERO);
     let mut deepest = contacts.surface.figures.deepest;
     for (contact, met) in set.contacts.iter().zip(met).filter(|(contact, _)| contact.pressing > 0.0) {
-        let force = contact.force();
-        contact.parts().for_each(|(slot, weight)| forces[slot] += force * weight);
         let kept = contacts.kept(met.point);
         let touch = bodies[kept.body].kept_mut(kept);
-        let after = contact.relative(&set.steps);
-        deepest = deepest.max(-(met.gap + contact.normal.dot(after)));
+        let after = met.gap + contact.normal.dot(contact.step);
+        deepest = deepest.max(-after);
         if met.first {
             set_vector(touch, 0, contact.slip);
             touch[4] = T::from_f64(if contact.slides { SLIDES } else { STICKS });
-            touch[5] = T::from_f64(met.gap + contact.normal.dot(after));
+            touch[5] = T::from_f64(after);
         }
         if let Some(work_factor) = work_factor {
-            let before = contact.relative(&set.earlier);
-            let along = (after - contact.normal * after.dot(contact.normal)).length();
-            let slid = touch[6].to_f64() + if contact.slides { along } else { 0.0 };
-            let lost = touch[7].to_f64() - work_factor * force.dot(0.5 * (before + after));
-            touch[6] = T::from_f64(slid);
-            touch[7] = T::from_f64(lost);
+            touch[6] = T::from_f64(touch[6].to_f64() + contact.slid);
+            touch[7] = T::from_f64(touch[7].to_f64() - work_factor * contact.work);
         }
     }
     contacts.surface.figures.deepest = deepest;
-    contacts.surface.forces = forces;
 }
 
 /// Adds the forces to the loads, and notes them.
-pub(super) fn push<T: Scalar>(contacts: &mut SurfaceContacts, acted_on: &[u32], bodies: &mut [BodySlices<'_, T>]) {
-    let Surface { nodes, forces, pressed, .. } = &mut contacts.surface;
-    let pushed = acted_on.iter().zip(&*forces).filter(|(_, force)| **force != DVec3::ZERO);
-    for (&node, &force) in pushed {
+pub(super) fn push<T: Scalar>(contacts: &mut SurfaceContacts, forces: &[DVec4], bodies: &mut [BodySlices<'_, T>]) {
+    let Surface { nodes, near, pressed, .. } = &mut contacts.surface;
+    let pushed = near.nodes.iter().zip(forces).filter(|(_, force)| **force != DVec4::ZERO);
+    for (&node, force) in pushed {
         let (body, row) = nodes[node as usize];
-        let (columns, row) = (&mut bodies[body as usize], row as usize);
+        let (columns, row, force) = (&mut bodies[body as usize], row as usize, force.truncate());
         let load = vector(columns.external, row) + force;
         set_vector(columns.external, 3 * row, load);
         set_vector(columns.force, 3 * row, force);

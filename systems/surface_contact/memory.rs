@@ -31,18 +31,18 @@ fn bytes<T>(slice: &[T]) -> usize {
 
 impl Surface {
     fn memory(&self) -> SurfaceMemory {
-        let Self { facets, nodes, points, kept, apart, places, normals, fresh, numbers, .. } = self;
+        let Self { facets, nodes, points, kept, apart, places, normals, numbers, .. } = self;
         let of_nodes = bytes(nodes) + bytes(places);
         let of_points = bytes(points) + bytes(kept) + bytes(apart);
-        let of_triangles = self.triangles.bytes() + bytes(facets) + bytes(normals) + bytes(fresh) + bytes(numbers);
+        let of_triangles = self.triangles.bytes() + bytes(facets) + bytes(normals) + bytes(numbers);
         let near = bytes(&self.near.nodes) + bytes(&self.near.triangles);
-        let of_step =
-            bytes(&self.found) + self.gathered.bytes() + bytes(&self.solved) + bytes(&self.pairs) + bytes(&self.forces);
+        let of_step = bytes(&self.found) + self.gathered.bytes() + bytes(&self.solved) + bytes(&self.pairs);
+        let of_points_near = bytes(&self.wake) + bytes(&self.shortlists) + self.neighbourhoods.bytes();
         let remembered = bytes(&self.pressed) + bytes(&self.touching);
         SurfaceMemory {
             surfaces: of_nodes + of_points + of_triangles + self.crossings.bytes(),
             trees: self.trees.iter().map(|tree| tree.bytes()).sum(),
-            lists: self.lists.bytes() + bytes(&self.wake) + bytes(&self.shortlists) + near + self.motion.bytes(),
+            lists: self.lists.bytes() + of_points_near + near + self.motion.bytes(),
             pairs: self.lists.triangles.len(),
             step: of_step + remembered,
         }

@@ -1,21 +1,25 @@
-//! What may be left as it is while surfaces have moved so far: lists that hold all that is near serve on.
+//! What may be left as it is while surfaces have moved so far: all of it, or lists that hold all that is near.
 
 use super::body_slices::{BodySlices, vector};
 use super::survey::MARGIN;
-use super::{Surface, SurfaceContacts, crossings};
+use super::{MeetingColumns, MeetingColumnsReadOnlyItem, Surface, SurfaceContacts, crossings, faced, slices_of};
 use crate::backend::cpu::Cpu;
-use crate::contact::{Finder, Lists, Point, Shortlist, Stays};
+use crate::components::Clock;
+use crate::contact::{Finder, Lists, Point, Shortlist};
+use crate::error::Error;
 use crate::math::Scalar;
+use bevy_ecs::prelude::*;
 use glam::DVec3;
+use smallvec::{SmallVec, smallvec};
 use web_time::Instant;
 
-/// Triangles whose normals a task finds.
-const TRIANGLES_A_TASK: usize = 1024;
+/// Nodes whose places a task finds, and triangles whose normals.
+const NUMBERS_A_TASK: usize = 1024;
 
 /// How far nodes may move before shortlists are begun anew, in edges: at least and at most; and for how many steps of
 /// the fastest node, between these.
-const STAYS: [f64; 2] = [2e-3, 2e-2];
-const STEPS_OF_SHORTLISTS: f64 = 20.0;
+const STAYS: [f64; 2] = [2e-3, 3e-2];
+const STEPS_OF_SHORTLISTS: f64 = 40.0;
 
 /// How far faces must be looked at when the fastest node goes so far in a step (m).
 pub(super) fn reach(contacts: &SurfaceContacts, largest: f64) -> f64 {
@@ -30,31 +34,113 @@ impl SurfaceContacts {
 
     /// Whether shortlists hold where faces are looked at so far (m).
     pub(super) fn shortlists_hold(&self, reach: f64) -> bool {
-        let Surface { shortlists, stays, motion, .. } = &self.surface;
-        !shortlists.is_empty() && reach <= stays.reach && motion.shortlists.moved <= stays.moved
+        let Surface { shortlists, neighbourhoods, stays, motion, .. } = &self.surface;
+        let is_known = !shortlists.is_empty() && !neighbourhoods.is_too_wide(self.may_move());
+        is_known && reach <= stays.reach && motion.shortlists.moved <= stays.moved
+    }
+
+    /// How far nodes may move before shortlists are begun anew (m).
+    fn may_move(&self) -> f64 {
+        (STEPS_OF_SHORTLISTS * self.surface.motion.largest).clamp(STAYS[0] * self.edge, STAYS[1] * self.edge)
     }
 }
 
-/// Sees where some nodes are.
-fn place<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], of: Option<&[u32]>) {
-    let SurfaceContacts { surface, reference, .. } = contacts;
-    let (nodes, places) = (&surface.nodes, &mut surface.places);
-    let place = |node: usize| {
-        let (body, row) = nodes[node];
-        let (of_body, row) = (&bodies[body as usize], row as usize);
-        of_body.rest[row] - *reference + vector(of_body.u, row)
-    };
-    match of {
-        Some(some) => some.iter().for_each(|&node| places[node as usize] = place(node as usize)),
-        None => places.iter_mut().enumerate().for_each(|(node, at)| *at = place(node)),
+/// Bodies as slices, and whether anything may be near anything.
+type Searched<'a, T> = (bool, Vec<BodySlices<'a, T>>);
+
+/// How far faces must be looked at in this step (m); `None` where nothing was near anything in the last step, and
+/// nothing can be now.
+pub(super) fn awake<T: Scalar>(
+    contacts: &mut SurfaceContacts,
+    of: (&Clock, &Cpu),
+    bodies: &Query<(Entity, MeetingColumns)>,
+) -> Option<f64> {
+    let reach = follow::<T>(contacts, of, bodies);
+    let sleeps = contacts.sleeps(reach);
+    contacts.surface.figures.steps += 1;
+    contacts.surface.figures.asleep += u64::from(sleeps);
+    (!sleeps).then_some(reach)
+}
+
+/// Finds what points face; `None` where nothing was near anything in the last step, and nothing can be now.
+pub(super) fn search<'a, T: Scalar>(
+    contacts: &mut SurfaceContacts,
+    (clock, cpu): (&Clock, &Cpu),
+    bodies: &'a mut Query<(Entity, MeetingColumns)>,
+) -> Result<Option<Searched<'a, T>>, Error> {
+    let asked = contacts.surface.reach.take();
+    let Some(reach) = asked.or_else(|| awake::<T>(contacts, (clock, cpu), bodies)) else { return Ok(None) };
+    let bodies = slices_of::<T>(contacts, bodies)?;
+    if !contacts.lists_hold(reach) {
+        list(contacts, &bodies, reach, cpu);
     }
+    if !faced::wake(contacts, reach) && contacts.surface.crossings.near.is_empty() {
+        contacts.surface.figures.asleep += 1;
+        return Ok(Some((false, bodies)));
+    }
+    update_places(contacts, &bodies, cpu);
+    if !contacts.shortlists_hold(reach) {
+        renew_shortlists(contacts, &bodies, reach);
+    }
+    faced::face(contacts, reach, cpu);
+    crossings::find(contacts, reach);
+    contacts.surface.figures.examined += contacts.surface.found.len() as u64;
+    Ok(Some((true, bodies)))
+}
+
+/// Follows how nodes move; gives how far faces must be looked at (m). It is looked where nodes are when what their
+/// steps add up to is too much to leave all as it is.
+fn follow<T: Scalar>(
+    contacts: &mut SurfaceContacts,
+    (clock, cpu): (&Clock, &Cpu),
+    bodies: &Query<(Entity, MeetingColumns)>,
+) -> f64 {
+    let mut motion = std::mem::take(&mut contacts.surface.motion);
+    // by their numbers: one way through all is quicker than to look for each
+    let mut slices: SmallVec<[Option<[&[T]; 2]>; 16]> = smallvec![None; contacts.bodies.len()];
+    for (entity, MeetingColumnsReadOnlyItem { nodes, .. }) in bodies {
+        if let Some(of_body) = slices.get_mut(contacts.surface.number_of(entity)) {
+            *of_body = Some([nodes.u.slice(), nodes.step.slice()]);
+        }
+    }
+    let moving = |body: u32| slices[body as usize];
+    motion.follow(&moving, clock, cpu);
+    let reach = reach(contacts, motion.largest);
+    contacts.surface.motion = motion;
+    let all_hold = || !contacts.is_idle() && contacts.lists_hold(reach) && contacts.shortlists_hold(reach);
+    if !contacts.sleeps(reach) && !all_hold() {
+        let mut motion = std::mem::take(&mut contacts.surface.motion);
+        motion.look(&moving, cpu);
+        contacts.surface.motion = motion;
+    }
+    reach
+}
+
+/// Where a node is (m, from the reference).
+fn place<T: Scalar>(contacts: &SurfaceContacts, bodies: &[BodySlices<'_, T>], node: usize) -> DVec3 {
+    let (body, row) = contacts.surface.nodes[node];
+    let (of_body, row) = (&bodies[body as usize], row as usize);
+    of_body.rest[row] - contacts.reference + vector(of_body.u, row)
+}
+
+/// Some ascending numbers a task, with the values of these and of those between, and the number of the first value.
+fn tasks<'a, T>(numbers: &'a [u32], mut left: &'a mut [T]) -> impl Iterator<Item = (&'a [u32], usize, &'a mut [T])> {
+    let mut first = 0;
+    numbers.chunks(NUMBERS_A_TASK).map(move |numbers| {
+        let end = numbers.last().map_or(first, |&last| last as usize + 1);
+        let (values, others) = std::mem::take(&mut left).split_at_mut(end - first);
+        left = others;
+        (numbers, std::mem::replace(&mut first, end), values)
+    })
 }
 
 /// Makes the lists anew, of all that is within `reach` (m) and thickness, and a skin.
 pub(super) fn list<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], reach: f64, cpu: &Cpu) {
     let farthest = contacts.farthest(reach);
     let started = Instant::now();
-    place(contacts, bodies, None);
+    let mut places = std::mem::take(&mut contacts.surface.places);
+    places.iter_mut().enumerate().for_each(|(node, at)| *at = place(contacts, bodies, node));
+    contacts.surface.places = places;
     let mut trees = std::mem::take(&mut contacts.surface.trees);
     let meets = |point: u32, face: u32, of_face: bool| contacts.meets(point, face, of_face);
     let Surface { triangles, points, places, apart, .. } = &contacts.surface;
@@ -72,6 +158,7 @@ pub(super) fn list<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlic
     let near = surface.triangles.neighbourhood(listed.into_iter(), &among);
     surface.wake.clear();
     surface.wake.resize(surface.lists.points.len(), 0.0);
+    (0..).zip(&near.nodes).for_each(|(slot, &node)| surface.gathered.slots[node as usize] = slot);
     surface.near = near;
     surface.motion.mark_lists(bodies);
     // they are begun when somebody looks
@@ -80,28 +167,38 @@ pub(super) fn list<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlic
     surface.figures.building += started.elapsed();
 }
 
-/// Begins shortlists anew: for nodes that move no farther than some steps of the fastest will take them, and faces that
-/// are looked at no farther than `reach` (m), twice.
-pub(super) fn begin_shortlists<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], reach: f64) {
-    let edge = contacts.edge;
-    let Surface { motion, shortlists, stays, lists, .. } = &mut contacts.surface;
+/// Begins shortlists anew where nodes have moved so far that they do not hold: for nodes that move no farther than some
+/// steps of the fastest will take them; and all for new lists, and where faces are looked at farther than up to now, as
+/// far as twice `reach` (m).
+pub(super) fn renew_shortlists<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], reach: f64) {
+    let may_move = contacts.may_move();
+    let Surface { triangles, points, places, lists, neighbourhoods, motion, shortlists, stays, .. } =
+        &mut contacts.surface;
     motion.mark_shortlists(bodies);
-    shortlists.clear();
-    shortlists.resize(lists.points.len(), Shortlist::UNKNOWN);
-    let moved = (STEPS_OF_SHORTLISTS * motion.largest).clamp(STAYS[0] * edge, STAYS[1] * edge);
-    *stays = Stays { moved, reach: 2.0 * reach };
+    let is_known = !shortlists.is_empty() && reach <= stays.reach;
+    if !is_known {
+        neighbourhoods.list(triangles, points, lists);
+        shortlists.resize(lists.points.len(), Shortlist::UNKNOWN);
+        stays.reach = 2.0 * reach;
+    }
+    stays.moved = neighbourhoods.follow(places, may_move, |places| {
+        shortlists.iter_mut().take(places.end).skip(places.start).for_each(|short| *short = Shortlist::UNKNOWN);
+    });
 }
 
-/// Sees where the nodes are that are near something, and which way triangles look.
+/// Sees where the nodes are that are near something.
 pub(super) fn update_places<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], cpu: &Cpu) {
-    let near = std::mem::take(&mut contacts.surface.near);
-    place(contacts, bodies, Some(&near.nodes));
-    let Surface { triangles, places, normals, fresh, .. } = &mut contacts.surface;
-    fresh.resize(near.triangles.len(), DVec3::ZERO);
-    let tasks = fresh.chunks_mut(TRIANGLES_A_TASK).zip(near.triangles.chunks(TRIANGLES_A_TASK));
-    cpu.for_each(tasks, |(fresh, numbers)| {
-        fresh.iter_mut().zip(numbers).for_each(|(normal, &number)| *normal = triangles.normal(places, number));
+    let mut places = std::mem::take(&mut contacts.surface.places);
+    cpu.for_each(tasks(&contacts.surface.near.nodes, &mut places), |(nodes, first, places)| {
+        nodes.iter().for_each(|&node| places[node as usize - first] = place(contacts, bodies, node as usize));
     });
-    near.triangles.iter().zip(&*fresh).for_each(|(&number, normal)| normals[number as usize] = *normal);
-    contacts.surface.near = near;
+    contacts.surface.places = places;
+}
+
+/// Sees which way the triangles look that are near something.
+pub(super) fn update_normals(surface: &mut Surface, cpu: &Cpu) {
+    let Surface { near, triangles, places, normals, .. } = surface;
+    cpu.for_each(tasks(&near.triangles, normals), |(numbers, first, normals)| {
+        numbers.iter().for_each(|&number| normals[number as usize - first] = triangles.normal(places, number));
+    });
 }

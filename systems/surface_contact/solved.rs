@@ -5,9 +5,9 @@ use super::faced::Found;
 use super::gather::{Gathered, InStep, Met, allowed};
 use super::meet::{FACES, SLIDES, STICKS, forget, push, release};
 use super::{Meeting, SurfaceContacts};
-use crate::backend::cpu::IntegrationCoefficients;
+use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
-use crate::contact::{Contact, Point};
+use crate::contact::{Contact, Parts, Point};
 use crate::error::Error;
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
@@ -76,20 +76,18 @@ pub(crate) fn find(world: &World, first_axis: impl Fn(Entity) -> Option<usize>, 
     let Some(contacts) = world.get_resource::<SurfaceContacts>() else { return };
     let (gathered, solved) = (&contacts.surface.gathered, &contacts.surface.solved);
     let axis_of = |slot: usize| {
-        let (body, row) = contacts.surface.nodes[gathered.acted_on[slot] as usize];
+        let (body, row) = contacts.surface.nodes[contacts.surface.near.nodes[slot] as usize];
         Some(first_axis(contacts.bodies[body as usize])? + 3 * row as usize)
     };
     for (contact, solved) in gathered.set.contacts.iter().zip(solved) {
-        let parts = contact.parts().filter_map(|(slot, weight)| Some((axis_of(slot)?, weight)));
+        let parts = contact.parts.iter().filter_map(|(slot, weight)| Some((axis_of(slot)?, weight)));
         found.push(TouchingSpring { parts: parts.collect(), force: contact.force(), slopes: solved.slopes });
     }
 }
 
 /// Finds which points may touch what in the step that begins, of what points face.
 pub(super) fn pair<T: Scalar>(contacts: &mut SurfaceContacts, clock: &Clock, bodies: &mut [BodySlices<'_, T>]) {
-    let coefficients = IntegrationCoefficients::<f64>::of(clock);
-    let largest = contacts.surface.motion.largest;
-    let in_step = InStep { largest, settling: contacts.settling(clock), coefficients: &coefficients };
+    let in_step = InStep { largest: contacts.surface.motion.largest, settling: contacts.settling(clock) };
     let mut pairs = std::mem::take(&mut contacts.surface.pairs);
     let surface = &contacts.surface;
     let mut add = |pair: Pair, gap: f64| {
@@ -164,13 +162,14 @@ fn borne<T: Scalar>(
 /// where the step is taken.
 pub(super) fn press<T: Scalar>(
     contacts: &mut SurfaceContacts,
-    (clock, springs): (&Clock, &SolvedSprings),
+    (clock, springs, cpu): (&Clock, &SolvedSprings, &Cpu),
     bodies: &mut [BodySlices<'_, T>],
 ) {
     let mut gathered = std::mem::take(&mut contacts.surface.gathered);
     gathered.clear();
     let coefficients = IntegrationCoefficients::<f64>::of(clock);
-    let in_step = InStep { largest: 0.0, settling: 0.0, coefficients: &coefficients };
+    gathered.foresee(&contacts.surface, &coefficients, bodies, cpu);
+    let time = 1.0 / coefficients.rate;
     let mut solved = std::mem::take(&mut contacts.surface.solved);
     solved.clear();
     let pairs = std::mem::take(&mut contacts.surface.pairs);
@@ -183,33 +182,25 @@ pub(super) fn press<T: Scalar>(
         if gap > 0.0 {
             continue;
         }
-        add(contacts, &mut gathered, (pair, gap), (&in_step, springs), bodies, &mut solved);
+        add(contacts, &mut gathered, (pair, gap), (springs, time), bodies, &mut solved);
     }
     if springs.forces.are_noted() {
-        let mut forces = std::mem::take(&mut contacts.surface.forces);
-        forces.clear();
-        forces.resize(gathered.acted_on.len(), DVec3::ZERO);
-        for contact in &gathered.set.contacts {
-            let force = contact.force();
-            contact.parts().for_each(|(slot, weight)| forces[slot] += force * weight);
-        }
-        contacts.surface.forces = forces;
+        gathered.set.find_forces(cpu);
         release(&mut contacts.surface, bodies);
         forget(contacts, &gathered.facing, bodies);
         note(contacts, (&gathered, clock.relaxation.is_none()), &pairs, &solved, bodies);
-        push(contacts, &gathered.acted_on, bodies);
+        push(contacts, &gathered.set.forces, bodies);
     }
-    gathered.acted_on.iter().for_each(|&node| gathered.slots[node as usize] = u32::MAX);
     (contacts.surface.gathered, contacts.surface.pairs, contacts.surface.solved) = (gathered, pairs, solved);
 }
 
-/// Adds the contact of a pair with such a gap (m), with its force. The mass that a spring presses on is that of the
-/// point.
+/// Adds the contact of a pair with such a gap (m), with its force, of springs in steps of such a time (s). The mass
+/// that a spring presses on is that of the point.
 fn add<T: Scalar>(
     contacts: &SurfaceContacts,
     gathered: &mut Gathered,
     (pair, gap): (&Pair, f64),
-    (in_step, springs): (&InStep<'_>, &SolvedSprings),
+    (springs, time): (&SolvedSprings, f64),
     bodies: &mut [BodySlices<'_, T>],
     all: &mut Vec<Solved>,
 ) {
@@ -222,18 +213,16 @@ fn add<T: Scalar>(
     let (touched, sticks) = (met.first && state >= STICKS, met.first && state == STICKS);
     let slip = if touched { vector_at(touch, 0) } else { DVec3::ZERO };
     let friction = meeting.friction[usize::from(!sticks)];
-    let mut contact = Contact::new((normal, gap), (friction, slip));
-    let mut mass = 0.0;
+    let (mut parts, mut mass) = (Parts::default(), 0.0);
     for &(node, weight) in &pair.nodes {
-        let slot = gathered.slot_of(node, (&contacts.surface, in_step), bodies);
-        contact.add(slot, weight);
+        parts.add(gathered.slots[node as usize], weight);
         if weight > 0.0 {
             let (body, row) = contacts.surface.nodes[node as usize];
             mass += weight * bodies[body as usize].weighs[row as usize].to_f64();
         }
     }
-    let relative = contact.relative(&gathered.set.earlier);
-    let time = 1.0 / in_step.coefficients.rate;
+    let relative = parts.step(&gathered.set.earlier);
+    let mut contact = Contact::new(parts, (normal, gap, relative), (friction, slip));
     let press = spring.press(springs, mass, gap, [normal.dot(relative), time]);
     let rubbing = press.rub(normal, contact.along(slip + relative), friction);
     let slopes = press.with(normal, &rubbing).1;
@@ -267,7 +256,7 @@ fn note<T: Scalar>(
     for ((contact, met), Solved { was, rubbed, .. }) in gathered.set.contacts.iter().zip(&gathered.met).zip(all) {
         let kept = contacts.kept(met.point);
         let touch = bodies[kept.body].kept_mut(kept);
-        let relative = contact.relative(&gathered.set.earlier);
+        let relative = contact.parts.step(&gathered.set.earlier);
         if met.first {
             set_vector(touch, 0, contact.slip);
             touch[4] = T::from_f64(if contact.slides { SLIDES } else { STICKS });

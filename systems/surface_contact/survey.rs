@@ -93,10 +93,8 @@ fn clear<C: Deref<Target = Reals> + DerefMut>(column: &mut Mut<'_, C>, numbers: 
 
 /// Notes what bore forces or touched in the last step, where others have written that or surfaces are others.
 fn remember(contacts: &mut SurfaceContacts, bodies: &mut Query<(Entity, MeetingColumns)>, is_other: bool) {
-    let changed = |&body: &Entity| {
-        bodies.get_mut(body).is_ok_and(|(_, columns)| columns.force.is_changed() || columns.touch.is_changed())
-    };
-    if !is_other && !contacts.bodies.iter().any(changed) {
+    let is_changed = bodies.iter_mut().any(|(_, columns)| columns.force.is_changed() || columns.touch.is_changed());
+    if !is_other && !is_changed {
         return;
     }
     let Surface { nodes, kept, pressed, touching, motion, .. } = &mut contacts.surface;

@@ -16,6 +16,7 @@ pub struct ContactStep {
     pub(super) springs: Option<SolvedSprings>,
     /// As many as there are, and then anything.
     pub(super) tools: [ToolInStep; ToolContacts::MOST],
+    count: usize,
 }
 
 /// A tool in a step.
@@ -50,9 +51,23 @@ impl Bound {
             Self::Below(normal, height) => normal.dot(place) <= height,
         }
     }
+
+    /// Whether it may hold a place within a box, from the least to the largest coordinates (m): it does if it holds
+    /// the one that is nearest to it, for rounding keeps order.
+    fn meets(&self, [low, high]: [DVec3; 2]) -> bool {
+        self.holds(match *self {
+            Self::Ball(center, _) => center.max(low).min(high),
+            Self::Below(normal, _) => DVec3::select(normal.cmpge(DVec3::ZERO), low, high),
+        })
+    }
 }
 
 impl ContactStep {
+    /// Whether any tool may touch nodes within a box (m, from the reference).
+    pub(super) fn meets(&self, within: [DVec3; 2]) -> bool {
+        self.tools[..self.count].iter().any(|tool| tool.bound.meets(within))
+    }
+
     /// Which of some tools may touch a node at a place (m, from the reference); both as bits.
     #[inline(always)]
     pub(super) fn near(&self, tools: u32, place: DVec3) -> u32 {
@@ -93,6 +108,7 @@ impl ToolContacts {
             time: clock.time_step,
             springs: clock.springs,
             tools,
+            count: self.tools.len(),
         }
     }
 
@@ -109,3 +125,6 @@ impl ToolContacts {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -3,6 +3,7 @@
 //! E = 3000 Pa, ν = .45, ρ = 1000 kg/m³ (so c = 3.373 m/s) unless a test says otherwise.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod asleep;
 mod attachments;
 mod bits;
 #[path = "../physics/configurations.rs"]

@@ -62,7 +62,8 @@ fn touch(world: &mut World, (of_grid, several, springs, is_swept): (bool, bool, 
         let masks = rows.iter().map(|row| mask(*row)).collect();
         // a hand wants the sum of forces, too
         let (edge, felt) = (0.2 * size, several);
-        let contacts = ToolContacts { tools, reference: middle, rows, masks, edge, settling: 1.0, felt };
+        let boxes = ToolContacts::boxes_of(&rows, &rest, middle);
+        let contacts = ToolContacts { tools, reference: middle, rows, masks, boxes, edge, settling: 1.0, felt };
         let touch = Reals::from_f64(
             Precision::F32,
             (0..contacts.numbers() * contacts.rows.len()).map(|i| f64::from(u8::from(i % 3 == 0))),

@@ -335,3 +335,28 @@ fn energy_that_springs_of_contact_make_is_told_of() {
         assert!(!warned("Kinematic", 1e-4, -0.1), "{}: stops", run.name);
     }
 }
+
+/// One sweep of contact cannot give more energy than its law says: it is looked for where somebody looks, nothing is
+/// found in a collision, and what is forged ends the run by name.
+#[test]
+fn energy_that_contact_cannot_give_ends_the_run() {
+    for run in configurations().into_iter().filter(|run| run.options.backend == BackendChoice::Cpu) {
+        let cube = "mesh: Box(size: (0.02, 0.02, 0.02), cells: (3, 3, 3)), material: \"m\"";
+        let mut simulation = run.start(&format!(
+            "(duration: 1, bodies: {{\"a\": ({cube}),
+                \"b\": ({cube}, rotate: (20, 35, 10), translate: (0.002, 0.008, 0.028), velocity: (-0.1, 0.02, -0.5))}},
+            materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}}, guards: (every: 5),
+            contacts: [Between(bodies: (\"a\", \"b\"), friction: 0.4)])"
+        ));
+        simulation.advance_to(0.04).unwrap();
+        let gain = *simulation.world().resource::<ContactGain>();
+        assert!(gain.steps > 3 && gain.energy == 0.0, "{}: {gain:?}", run.name);
+        simulation.world_mut().resource_mut::<ContactGain>().energy = 1e-6;
+        let broken = match simulation.advance(5) {
+            Err(Error::Unstable(broken)) => broken,
+            other => panic!("{}: {other:?}", run.name),
+        };
+        assert_eq!((broken.criterion.name, broken.criterion.value), ("contact", Some(1e-6)), "{}", run.name);
+        assert!(broken.what.contains("1.000e-6 J"), "{}", broken.what);
+    }
+}

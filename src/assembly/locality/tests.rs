@@ -1,6 +1,7 @@
 #![allow(clippy::expect_used)]
 
 use super::*;
+use crate::components::GROUP_ROWS;
 use crate::mesh::{ElementKind, generators::box_mesh};
 
 #[test]
@@ -57,6 +58,40 @@ fn patches_are_compact_and_their_inner_nodes_come_first() {
         next += inside as u32;
     }
     assert!(patches_of[next as usize..].iter().all(|&patches| patches > 1));
+}
+
+/// Of a body whose surface may meet others nodes of the surface follow the others inside their patch, and those that
+/// patches share follow all others.
+#[test]
+fn nodes_of_surfaces_follow_those_inside_their_patch() {
+    let mesh = box_mesh(DVec3::ONE, (20, 20, 20), ElementKind::Hex8).expect("a box");
+    let order = element_order(&mesh, (0..8000).collect(), 1, 224);
+    let patches = || order.chunks(224).map(|patch| patch.iter().map(|&e| mesh.element(e as usize)));
+    let is_on_surface = |node: &usize| mesh.points[*node].to_array().iter().any(|x| *x < 1e-9 || *x > 1.0 - 1e-9);
+    let apart: Vec<u32> = (0..mesh.points.len()).filter(is_on_surface).map(|node| node as u32).collect();
+    let rows = node_rows(mesh.points.len(), patches(), &apart);
+    let (mut patches_of, mut is_apart) = (vec![0; rows.len()], vec![false; rows.len()]);
+    apart.iter().for_each(|&node| is_apart[rows[node as usize] as usize] = true);
+    let mut of_patches: Vec<Vec<u32>> = patches().map(|p| p.flatten().map(|&n| rows[n as usize]).collect()).collect();
+    for nodes in &mut of_patches {
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes.iter().for_each(|&row| patches_of[row as usize] += 1);
+    }
+    let (mut next, mut with_both) = (0, 0);
+    for nodes in &of_patches {
+        let inside = |apart: bool| {
+            let is_inside = |row: usize| patches_of[row] == 1 && is_apart[row] == apart;
+            nodes.iter().filter(|&&row| is_inside(row as usize)).count()
+        };
+        let [free, of_surface] = inside_of([inside(false), inside(true)]);
+        let own = next..next + (free + of_surface) as u32;
+        assert!(nodes.iter().zip(own.clone()).all(|(&row, wanted)| row == wanted), "{free}, {of_surface}");
+        assert!(free == 0 || own.clone().all(|row| is_apart[row as usize] == (row - next >= free as u32)));
+        with_both += usize::from(free > 0 && of_surface > 0);
+        next = own.end;
+    }
+    assert!(with_both > 20 && is_apart[next as usize..].is_sorted() && is_apart[rows.len() - 1], "{with_both}");
 }
 
 /// Copies in the same place are not mixed: each has the order of the first.

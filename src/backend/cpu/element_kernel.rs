@@ -50,11 +50,19 @@ pub struct BlockColumns<'a, 'n, T> {
 /// The nodes inside patches, and what follows for them. Where a patch has an element with J < 0 they stay as they are.
 pub struct PatchInterior<'a, 'n, T> {
     /// Of each patch, perhaps none.
-    pub nodes: &'a mut [NodeColumns<'n, T>],
+    pub nodes: &'a mut [InsidePatch<'n, T>],
     /// What is done to them as soon as their internal forces are known.
-    pub then: &'a (dyn Fn(&mut NodeColumns<'_, T>) + Sync),
-    /// Whether somebody may look at their forces afterwards.
+    pub then: &'a (dyn Fn(&mut NodeColumns<'_, T>, &mut NodeColumns<'_, T>) + Sync),
+    /// Whether somebody may look afterwards at forces on nodes that always move with their patch.
     pub observed: bool,
+}
+
+/// The nodes inside a patch.
+pub struct InsidePatch<'n, T> {
+    /// Those that always move with it.
+    pub free: NodeColumns<'n, T>,
+    /// The others ([`Patches::deferred`]), whose forces stay in their columns.
+    pub deferred: NodeColumns<'n, T>,
 }
 
 /// Fills in the forces of a block and carries its viscous history on by one step. Returns the patches that have
@@ -224,18 +232,20 @@ impl<E: Element, T: SimdScalar> BlockRun<'_, '_, E, T> {
         });
         cpu.for_each(tasks, |(patch, interior)| {
             let index = patch.first_group / groups_a_patch;
-            let run = |patch: PatchForces<'_, E, T, L, EFFECTS>, interior: Option<&mut NodeColumns<'_, T>>| {
-                T::with_scratch(|scratch| E::run_patch(cpu, OfPatch { patch, interior, scratch }))
+            let run = |patch: PatchForces<'_, E, T, L, EFFECTS>, inside: Inside<'_, T>| {
+                T::with_scratch(|scratch| E::run_patch(cpu, OfPatch { patch, inside, scratch }))
             };
             let is_inverted = match (interior, then) {
-                (Some(interior), Some((then, observed))) => interior.with_forces(observed, |interior| {
-                    let is_inverted = run(patch, Some(interior));
+                (Some(InsidePatch { free, deferred }), Some((then, observed))) => free.with_forces(observed, |free| {
+                    let u = [&*free.u, &*deferred.u];
+                    let forces = [&mut *free.internal, &mut *deferred.internal];
+                    let is_inverted = run(patch, Inside { u, forces });
                     if !is_inverted {
-                        then(interior);
+                        then(free, deferred);
                     }
                     is_inverted
                 }),
-                _ => run(patch, None),
+                _ => run(patch, Inside { u: [&[]; 2], forces: [&mut [], &mut []] }),
             };
             if is_inverted {
                 inverted.lock().unwrap_or_else(PoisonError::into_inner).push(index);
@@ -272,23 +282,28 @@ struct PatchForces<'a, E, T: SimdScalar, L, const EFFECTS: u8> {
     element: PhantomData<E>,
 }
 
+/// The nodes inside a patch that move with it, one sort after the other: displacements (m), and where forces on them go
+/// (N).
+struct Inside<'i, T> {
+    u: [&'i [T]; 2],
+    forces: [&'i mut [T]; 2],
+}
+
 /// A patch, the nodes inside it if they move with it, and where to compute it.
-struct OfPatch<'a, 'i, 'n, 's, E, T: SimdScalar, L, const EFFECTS: u8> {
+struct OfPatch<'a, 'i, 's, E, T: SimdScalar, L, const EFFECTS: u8> {
     patch: PatchForces<'a, E, T, L, EFFECTS>,
-    interior: Option<&'i mut NodeColumns<'n, T>>,
+    inside: Inside<'i, T>,
     scratch: &'s mut Scratch<T>,
 }
 
-impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd
-    for OfPatch<'_, '_, '_, '_, E, T, L, EFFECTS>
-{
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd for OfPatch<'_, '_, '_, E, T, L, EFFECTS> {
     /// Whether there is an element with J < 0.
     type Output = bool;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> bool {
-        let Self { mut patch, interior, scratch } = self;
-        patch.bring(interior.as_deref(), scratch);
+        let Self { mut patch, inside, scratch } = self;
+        patch.bring(inside.u, scratch);
         let mut law = patch.in_registers(simd);
         let mut worst = T::splat(simd, T::default());
         for group in 0..patch.connectivity.len() / E::NODES {
@@ -308,7 +323,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd
         let mut lanes = [T::default(); LANES];
         T::store(worst, &mut lanes);
         let is_inverted = lanes.iter().any(|&v| v > T::default());
-        patch.bring_back(interior.filter(|_| !is_inverted), scratch);
+        patch.bring_back(if is_inverted { [&mut [], &mut []] } else { inside.forces }, scratch);
         is_inverted
     }
 }

@@ -11,7 +11,7 @@ mod own_kernels;
 mod strain_kernel;
 mod volume_kernel;
 
-pub use element_kernel::{BlockColumns, PatchInterior, kernel_effects, run_block, run_block_fast};
+pub use element_kernel::{BlockColumns, InsidePatch, PatchInterior, kernel_effects, run_block, run_block_fast};
 pub use guard_kernel::{BlockSums, GuardColumns, run_guard};
 pub use law::BlockLaw;
 pub use law_copies::{LawCopies, LawParameters, PerCopyLaw};

@@ -1,6 +1,34 @@
 #![allow(clippy::expect_used)]
 
 use super::*;
+use crate::backend::cpu::Cpu;
+
+/// What a point faces by its shortlist, which is known, and whether that is seen at a glance: then the same.
+pub(in crate::contact) fn by_shortlist(
+    surfaces: &Surfaces,
+    (now, point): (Placed<'_>, &Point),
+    listed: Listed<'_>,
+    reach: &impl Fn(u32) -> f64,
+    short: &Shortlist,
+) -> (Faced, bool) {
+    let (mut pairs, mut same) = (Pairs::default(), *short);
+    let [mut chosen, mut seen] = [Faced::NOTHING; 2];
+    let kept = (&mut chosen, &mut Kept::default());
+    surfaces.faced((now, point), listed, (reach, 1.0), (&mut same, Stays::default()), kept);
+    // behind those of others
+    pairs.add(DVec3::ZERO, [DVec3::X, DVec3::Y, DVec3::Z]);
+    surfaces.ask(now.places, point, short, &mut pairs);
+    pairs.find(&Cpu::new(1, 0, Default::default()));
+    // with normals that are known, and with those that are asked for
+    let mut is_all = [now.normals, &[][..]].into_iter().map(|normals| {
+        let of = (Placed { normals, ..now }, point, short);
+        let seen = (&mut seen, &mut Own::default());
+        surfaces.faced_at_a_glance(of, (&pairs, 1), (listed.nearer, reach, 1.0), seen)
+    });
+    let is_all = is_all.all(|is_all| is_all);
+    assert!(!is_all || seen == chosen, "{seen:?}, {chosen:?}");
+    (chosen, is_all)
+}
 
 /// What a point faces, with the normals of all triangles found for it.
 fn faced(surfaces: &Surfaces, places: &[DVec3], point: &Point, triangles: &[u32], reach: impl Fn(u32) -> f64) -> Faced {
@@ -9,13 +37,12 @@ fn faced(surfaces: &Surfaces, places: &[DVec3], point: &Point, triangles: &[u32]
     let distances = vec![0.0; triangles.len()];
     let listed = Listed { triangles, distances: &distances, nearer: 0.0, farthest: 1.0 };
     let now = Placed { places, normals: &normals };
-    let mut short = Shortlist::UNKNOWN;
+    let (mut short, mut found) = (Shortlist::UNKNOWN, Faced::NOTHING);
     let stays = Stays { moved: 1e-3, reach: 1e-3 };
-    let [mut found, mut by_short] = [Faced::NOTHING; 2];
-    surfaces.faced(now, point, listed, (&reach, 1.0), (&mut short, stays), (&mut found, &mut Kept::default()));
+    let kept = (&mut found, &mut Kept::default());
+    surfaces.faced((now, point), listed, (&reach, 1.0), (&mut short, stays), kept);
     // what the shortlist leaves out changes nothing
-    surfaces.faced(now, point, listed, (&reach, 1.0), (&mut short, stays), (&mut by_short, &mut Kept::default()));
-    assert_eq!(by_short, found);
+    assert_eq!(by_shortlist(surfaces, (now, point), listed, &reach, &short).0, found);
     found
 }
 

@@ -1,4 +1,5 @@
 use super::*;
+use crate::contact::facing::tests::by_shortlist;
 use crate::contact::{Faced, Kept, Listed, Placed, Point, Surfaces};
 use glam::DVec3;
 
@@ -15,8 +16,13 @@ fn sheet() -> (Surfaces, Vec<DVec3>) {
 }
 
 /// What a point of the other triangle faces, its first corner or one within, by a shortlist or, where that is not
-/// known, by the whole list.
-fn faced(surfaces: &Surfaces, (places, within): (&[DVec3], bool), short: &mut Shortlist, stays: Stays) -> Faced {
+/// known, by the whole list; and whether at a glance.
+fn faced(
+    surfaces: &Surfaces,
+    (places, within): (&[DVec3], bool),
+    short: &mut Shortlist,
+    stays: Stays,
+) -> (Faced, bool) {
     let other = surfaces.triangles.len() as u32 - 1;
     let all: Vec<u32> = (0..other).collect();
     let normals: Vec<DVec3> = (0..=other).map(|triangle| surfaces.normal(places, triangle)).collect();
@@ -32,9 +38,12 @@ fn faced(surfaces: &Surfaces, (places, within): (&[DVec3], bool), short: &mut Sh
         },
         false => Point::node(1, 25),
     };
+    if short.triangles().is_some() {
+        return by_shortlist(surfaces, (now, &point), listed, &|_| 0.1, short);
+    }
     let mut found = Faced::NOTHING;
-    surfaces.faced(now, &point, listed, (|_| 0.1, 1.0), (short, stays), (&mut found, &mut Kept::default()));
-    found
+    surfaces.faced((now, &point), listed, (|_| 0.1, 1.0), (short, stays), (&mut found, &mut Kept::default()));
+    (found, false)
 }
 
 /// However nodes move that a shortlist allows for: what it leaves out changes nothing of what is faced. And it
@@ -43,7 +52,7 @@ fn faced(surfaces: &Surfaces, (places, within): (&[DVec3], bool), short: &mut Sh
 fn shortlists_have_all_that_may_be_faced() {
     let mut random = fastrand::Rng::with_seed(11);
     let (surfaces, flat) = sheet();
-    let (mut known, mut left, mut faces, mut turned) = (0, 0, 0, 0);
+    let (mut known, mut left, mut faces, mut turned, mut glances) = (0, 0, 0, 0, 0);
     for round in 0..400 {
         let mut vector = |size: f64| size * (DVec3::new(random.f64(), random.f64(), random.f64()) - 0.5);
         let (place, stays) = (vector(1.0), Stays { moved: 0.02, reach: 0.0 });
@@ -54,23 +63,25 @@ fn shortlists_have_all_that_may_be_faced() {
         before.extend([corner, corner + 0.5 * across[0], corner + 0.5 * across[1]]);
         let mut short = Shortlist::UNKNOWN;
         faced(&surfaces, (&before, within), &mut short, stays);
-        let Some(places) = short.places() else { continue };
+        let Some(triangles) = short.triangles() else { continue };
         known += 1;
-        left += places.len();
-        turned += (0..places.len()).filter(|&number| short.is_turned_away(number)).count();
+        left += triangles.len();
+        turned += (0..triangles.len()).filter(|&number| short.is_turned_away(number)).count();
         for _ in 0..20 {
             // each within half of what two may move against each other
             let half = stays.moved / 3.0_f64.sqrt();
             let after: Vec<DVec3> = before.iter().map(|&at| at + vector(half)).collect();
             let [mut unknown, mut same] = [Shortlist::UNKNOWN, short];
-            let by_list = faced(&surfaces, (&after, within), &mut unknown, stays);
-            let by_short = faced(&surfaces, (&after, within), &mut same, stays);
+            let by_list = faced(&surfaces, (&after, within), &mut unknown, stays).0;
+            let (by_short, at_a_glance) = faced(&surfaces, (&after, within), &mut same, stays);
             assert_eq!((by_short.first, by_short.second), (by_list.first, by_list.second), "{round}");
             assert!(by_short.wakes <= by_list.wakes + stays.moved, "{round}");
             faces += usize::from(by_list.first.is_some());
+            glances += usize::from(at_a_glance && by_list.first.is_some());
         }
     }
     assert!(known > 200 && left < 5 * known && faces > 1000, "{known}, {left}, {faces}");
+    assert!(2 * glances > faces, "{glances} of {faces}");
     // of nodes, three of four of which look at the sheet
     assert!(turned > 100 && turned < left / 2, "{turned} of {left}");
 }

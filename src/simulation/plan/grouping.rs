@@ -1,6 +1,7 @@
 //! Which neighbours of a schedule share a pass on a backend: from what systems are and what they touch.
 
 use super::{Over, Pass};
+use crate::components::{Displacement, DisplacementIncrement, Touched};
 use crate::simulation::schedule::Scheduled;
 use crate::systems::{OnDevice, OnHost, Phase, Repeat};
 use bevy_ecs::prelude::World;
@@ -52,8 +53,9 @@ impl Grouping<'_> {
         together
     }
 
-    /// On the CPU what concerns only nodes that are inside no patch (contact between surfaces, glue) does not keep
-    /// those inside from moving with their patch.
+    /// On the CPU what concerns only nodes of surfaces (contact between them, glue) does not keep others from moving
+    /// with their patch. Where all of that says beforehand, by where nodes are, whether it does something, and nobody
+    /// in the pass moves nodes before it would, it may sleep.
     pub fn ahead(&self, passes: Vec<Pass>, world: &World) -> Vec<Pass> {
         let mut passes: VecDeque<Pass> = passes.into();
         let mut all = Vec::new();
@@ -75,6 +77,11 @@ impl Grouping<'_> {
             }
             elements.systems.extend(passes.pop_front().into_iter().flat_map(|sums| sums.systems));
             let between: Vec<Pass> = passes.drain(..between).collect();
+            let may_sleep = |pass: &Pass| self.schedule[pass.systems[0]].system.may_sleep;
+            let stays = |&place: &usize| !moves_nodes_by_itself(&self.access[place], world);
+            if between.iter().all(may_sleep) && elements.systems.iter().all(stays) {
+                elements.sleepers = between.len();
+            }
             if let Some(mut moves) = passes.pop_front() {
                 elements.ahead.clone_from(&moves.systems);
                 (elements.over, moves.over) = (Over::Elements, Over::Shared);
@@ -175,6 +182,12 @@ impl Grouping<'_> {
     fn apart(&self, pass: &Pass) -> String {
         format!("`{}` does not share a pass over the nodes", self.schedule[pass.systems[0]].system.name)
     }
+}
+
+/// Whether a system that does not stand where nodes move writes where they are or how far they go.
+fn moves_nodes_by_itself(access: &SystemAccess, world: &World) -> bool {
+    let of_motion = [world.component_id::<Displacement>(), world.component_id::<DisplacementIncrement>()];
+    of_motion.into_iter().flatten().any(|column| Touched(access).writes(column))
 }
 
 /// Whether neither writes what the other touches.

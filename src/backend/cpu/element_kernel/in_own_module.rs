@@ -12,7 +12,7 @@ pub(super) trait InOwnModule: Element {
     #[inline(never)]
     fn run_patch<T: SimdScalar, L: Elastic<T>, const EFFECTS: u8>(
         cpu: &Cpu,
-        task: OfPatch<'_, '_, '_, '_, Self, T, L, EFFECTS>,
+        task: OfPatch<'_, '_, '_, Self, T, L, EFFECTS>,
     ) -> bool {
         // constants, so that no code is made of the other ways
         if const { EFFECTS == GENERIC } {

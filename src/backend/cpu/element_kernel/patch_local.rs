@@ -1,6 +1,6 @@
 //! What is patch-local: its nodes' displacements, and the sums of its forces.
 
-use super::{NodeColumns, PatchForces};
+use super::PatchForces;
 use crate::components::Patches;
 use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::materials::Elastic;
@@ -55,20 +55,23 @@ pub(super) struct PatchLocal<'a> {
 
 impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_, E, T, L, EFFECTS> {
     /// Displacements of the patch's nodes, and θ where elements take their pressure from it, to hand; no forces yet.
+    /// Those `inside` that move with the patch bring theirs along (m).
     #[inline(always)]
-    pub(super) fn bring(&self, interior: Option<&NodeColumns<'_, T>>, scratch: &mut Scratch<T>) {
+    pub(super) fn bring(&self, inside: [&[T]; 2], scratch: &mut Scratch<T>) {
         let Some(patch_local) = &self.patch_local else { return };
         let theta = |node: u32| match E::PRESSURE {
             PressureFrom::Nodes => self.nodal_volume_change[node as usize],
             _ => T::default(),
         };
-        let (own, others) = patch_local.nodes.split_at(interior.map_or(0, |columns| columns.rows()));
-        if let Some(columns) = interior {
-            for ((row, &node), u) in scratch.read.iter_mut().zip(own).zip(columns.u.chunks_exact(3)) {
+        let mut rows = 0;
+        for u in inside {
+            let own = scratch.read[rows..].iter_mut().zip(&patch_local.nodes[rows..]);
+            for ((row, &node), u) in own.zip(u.chunks_exact(3)) {
                 *row = [u[0], u[1], u[2], theta(node)];
             }
+            rows += u.len() / 3;
         }
-        for (row, &node) in scratch.read[own.len()..].iter_mut().zip(others) {
+        for (row, &node) in scratch.read[rows..].iter_mut().zip(&patch_local.nodes[rows..]) {
             let first = 3 * (node as usize - self.first_row);
             let u = &self.displacement[first..first + 3];
             *row = [u[0], u[1], u[2], theta(node)];
@@ -76,15 +79,16 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
         scratch.sums[..patch_local.nodes.len()].fill([T::default(); 4]);
     }
 
-    /// The patch-local sums of forces: to the nodes inside that move now, all others to where patches are gathered.
+    /// The patch-local sums of forces: to the nodes `inside` that move with the patch, all others to where patches are
+    /// gathered.
     #[inline(always)]
-    pub(super) fn bring_back(&mut self, interior: Option<&mut NodeColumns<'_, T>>, scratch: &Scratch<T>) {
+    pub(super) fn bring_back(&mut self, inside: [&mut [T]; 2], scratch: &Scratch<T>) {
         let mut rows = 0;
-        if let Some(columns) = interior {
-            rows = columns.rows();
-            for (force, sum) in columns.internal.chunks_exact_mut(3).zip(&*scratch.sums) {
+        for forces in inside {
+            for (force, sum) in forces.chunks_exact_mut(3).zip(&scratch.sums[rows..]) {
                 force.copy_from_slice(&sum[..3]);
             }
+            rows += forces.len() / 3;
         }
         if self.patch_local.is_some() {
             for (force, sum) in self.force[3 * rows..].chunks_exact_mut(3).zip(&scratch.sums[rows..]) {
