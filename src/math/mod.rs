@@ -23,7 +23,6 @@ pub(crate) use extremes::{Extremes, ROUNDING, See};
 pub(crate) use noise::noise;
 pub(crate) use polar::Polar;
 pub(crate) use real::vector_at;
-pub(crate) use triangle::Nearest;
 #[doc(hidden)]
 pub use real::{Task, refine_inverse_cbrt};
 #[doc(hidden)]
@@ -32,5 +31,6 @@ pub use rows::{Rows, Scratch};
 pub use simd::{F32s, F64s, LANES, lane_place};
 #[doc(hidden)]
 pub use tensor::{dot, dot_plus, minor};
+pub(crate) use triangle::Nearest;
 #[doc(hidden)]
 pub use triangle::OnTriangle;

@@ -82,7 +82,7 @@ fn the_part_is_kept_at_the_limit_of_what_is_allowed() {
             let middle = 0.5 * (far[0] + far[1]);
             far[usize::from(keeps(middle))] = middle;
         }
-        let mut lands = |of_y: DVec3, of_corners: [DVec3; 3]| {
+        let lands = |of_y: DVec3, of_corners: [DVec3; 3]| {
             let moved_corners = [0, 1, 2].map(|i| corners[i] + 0.5 * moved * of_corners[i]);
             assert_eq!(OnTriangle::nearest(at(far[1]) + 0.5 * moved * of_y, moved_corners).part, 1);
         };
