@@ -21,7 +21,6 @@ pub use tensor::{Mat3, Sym3};
 pub(crate) use noise::noise;
 pub(crate) use polar::Polar;
 pub(crate) use real::vector_at;
-pub(crate) use triangle::Nearest;
 #[doc(hidden)]
 pub use real::{Task, refine_inverse_cbrt};
 #[doc(hidden)]
