@@ -61,10 +61,10 @@ impl Faced {
 }
 
 impl Surfaces {
-    /// What a point faces whose shortlist is known: where all triangles that matter but one at most are far off or beside
-    /// another, and the point is in front of that one, as for most. Whether that is all there is to it. Nothing has come
-    /// nearer since lists were made than by `nearer`, and faces are looked at that are no farther than `reach` (m);
-    /// `edge` is the length of an edge (m).
+    /// What a point faces whose shortlist is known: where all triangles that matter but one at most are far off or
+    /// beside another, and the point is in front of that one, as for most. Whether that is all there is to it. Nothing
+    /// has come nearer since lists were made than by `nearer`, and faces are looked at that are no farther than `reach`
+    /// (m); `edge` is the length of an edge (m).
     #[inline]
     pub fn faced_at_a_glance(
         &self,
