@@ -60,8 +60,8 @@ impl OnTriangle {
     /// Whether the nearest place to `y` stays on the same side or corner, as long as no two of the corners and `y` move
     /// against each other by more than a distance m. Products of vectors from a corner change by no more than the sum
     /// of what one of them alone does to them, with lengths that are as large as they may become. What is across a side
-    /// of length e, P, changes by s = m/e at most, the sine of the angle that the side turns by, and so o · P w by m (|P
-    /// o| + |P w| + s (|o| + |w|) + m) + s |o| |w|.
+    /// of length e, P, changes by s = m/e at most, the sine of the angle that the side turns by, and so o · P w by
+    /// m (|P o| + |P w| + s (|o| + |w|) + m) + s |o| |w|.
     pub fn keeps_part(&self, y: DVec3, corners: [DVec3; 3], moved: f64) -> bool {
         if self.part == 0 {
             return false;
