@@ -3,10 +3,11 @@
 //! how long lists take that tell what is near what, and what contact keeps in memory. The largest blocks have 10 092
 //! triangles and 146 334 tetrahedra each.
 //!
-//! `cargo bench --bench contact`; `-- large` and `-- small` run only some of it, `-- turns` whole steps of 10 368 and of
-//! 82 944 tetrahedra a block on one thread and on two, to compare two programs by turns (`-- turns 12` only the former),
-//! `-- near` only steps with a fifth that touches, for profiles (`-- near faces`, `-- far`). Steps are timed in blocks by turns, and the best of each counts:
-//! so other work on the machine does not. What lists take is added, spread over the steps that they serve.
+//! `cargo bench --bench contact`; `-- large` and `-- small` run only some of it, `-- turns` whole steps of 10 368 and
+//! of 82 944 tetrahedra a block on one thread and on two, to compare two programs by turns (`-- turns 12` only the
+//! former), `-- near` only steps with a fifth that touches, for profiles (`-- near faces`, `-- far`). Steps are timed
+//! in blocks by turns, and the best of each counts: so other work on the machine does not. What lists take is added,
+//! spread over the steps that they serve.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use bevy_ecs::change_detection::DetectChangesMut;

@@ -162,7 +162,7 @@ struct Surface {
     numbers: Vec<(Entity, usize)>,
     // what a step finds, kept so that the next one need not ask for memory
     found: Vec<faced::Found>,
-    rooms: Vec<faced::Room>,
+    kept_by_task: Vec<crate::contact::Kept>,
     reaches: Vec<f64>,
     gathered: gather::Gathered,
     /// What may touch in an implicit step.

@@ -1,8 +1,7 @@
 //! The face that a point faces.
 
 use super::candidates::{Candidates, Kept, Listed, NEARER, ON_IT};
-use super::pairs::Pairs;
-use super::shortlist::{Shortlist, Stays};
+use super::shortlist::{MOST, Shortlist, Stays};
 use super::surfaces::{Placed, Point, Surfaces};
 use crate::math::OnTriangle;
 use glam::DVec3;
@@ -62,55 +61,52 @@ impl Faced {
 }
 
 impl Surfaces {
-    /// Asks where the triangles of a point's shortlist are nearest, as many as that has.
-    #[inline]
-    pub fn ask(&self, places: &[DVec3], point: &Point, short: &Shortlist, pairs: &mut Pairs) {
-        let triangles = short.triangles().unwrap_or_default();
-        if !triangles.is_empty() {
-            let at = point.place(places);
-            triangles.iter().for_each(|&triangle| pairs.add(at, self.corners(places, triangle)));
-        }
-    }
-
-    /// What a point faces whose shortlist was asked about, from such a pair on: where all triangles that matter but one
-    /// at most are far off or beside another, and the point is in front of that one, as for most. Whether that is all
-    /// there is to it. Nothing has come nearer since lists were made than by `nearer`, and faces are looked at that are
-    /// no farther than `reach` (m); `edge` is the length of an edge (m).
+    /// What a point faces whose shortlist is known: where all triangles that matter but one at most are far off or
+    /// beside another, and the point is in front of that one, as for most. Whether that is all there is to it. Nothing
+    /// has come nearer since lists were made than by `nearer`, and faces are looked at that are no farther than `reach`
+    /// (m); `edge` is the length of an edge (m).
     #[inline]
     pub fn faced_at_a_glance(
         &self,
         (now, point, short): (Placed<'_>, &Point, &Shortlist),
-        (pairs, first): (&Pairs, usize),
         (nearer, reach, edge): (f64, impl Fn(u32) -> f64, f64),
         (faced, own): (&mut Faced, &mut Own),
     ) -> bool {
         let Some(triangles) = short.triangles() else { return false };
-        let (mut only, mut wakes) = (None, short.wakes);
+        (faced.first, faced.second, faced.wakes) = (None, None, short.wakes);
+        let (mut only, mut beside, mut seen) = (None, 0_u16, [(0.0, 0); MOST]);
+        if triangles.is_empty() {
+            return true;
+        }
+        let at = point.place(now.places);
         for (number, &triangle) in triangles.iter().enumerate() {
-            let (distance, part) = pairs.distance(first + number);
-            wakes = if distance - nearer < wakes { distance - nearer } else { wakes };
+            let found = OnTriangle::nearest(at, self.corners(now.places, triangle));
+            let distance = at.distance(found.at);
+            seen[number] = (distance, found.part);
+            faced.wakes = faced.wakes.min(distance - nearer);
             let within = [self.depths[triangle as usize], reach(triangle)];
             if distance > within[0] && distance > within[1] {
                 continue;
             }
-            if part != 0.0 && distance > ON_IT * edge {
-                let part = part as usize;
-                let is_beside = self.is_beside(triangles, (pairs, first), (number, part))
-                    || self.goes_on_nearer((now.places, pairs.place(first)), (triangle, part), NEARER * distance);
-                if !is_beside {
-                    return false;
-                }
-                continue;
-            }
-            if only.is_some() {
+            if found.part != 0 && distance > ON_IT * edge {
+                beside |= 1 << number;
+            } else if only.replace((number, found, within)).is_some() {
                 return false;
             }
-            only = Some((number, within));
         }
-        (faced.first, faced.second, faced.wakes) = (None, None, wakes);
-        let Some((number, [depth, reach])) = only else { return true };
-        let (found, normal, gap) = pairs.nearest(first + number);
-        // what has no area is no number away along its normal
+        for (number, &triangle) in triangles.iter().enumerate().filter(|(number, _)| beside >> number & 1 == 1) {
+            let (farthest, part) = (NEARER * seen[number].0, seen[number].1);
+            let mut others = triangles.iter().zip(&seen).filter(|(_, (distance, _))| *distance < farthest);
+            // those that show it are not all in shortlists
+            if !others.any(|(&other, _)| self.shares_part(other, triangle, part))
+                && !self.goes_on_nearer((now.places, at), (triangle, part), farthest)
+            {
+                return false;
+            }
+        }
+        let Some((number, OnTriangle { at: nearest, weights, .. }, [depth, reach])) = only else { return true };
+        let normal = self.normal_now(now, triangles[number]);
+        let gap = (at - nearest).dot(normal);
         if !(gap >= -depth && gap <= reach) || normal == DVec3::ZERO {
             return true;
         }
@@ -119,25 +115,13 @@ impl Surfaces {
             None => short.is_turned_away(number) || self.all_turned_away(now, point.nodes[0], normal),
         };
         if is_turned_away {
-            let OnTriangle { at, weights, .. } = found;
-            faced.first = Some(Facing { triangle: triangles[number], weights, at, normal, gap });
+            faced.first = Some(Facing { triangle: triangles[number], weights, at: nearest, normal, gap });
         }
         // of a node its own normal may have it otherwise
         is_turned_away || point.triangle.is_some()
     }
 
-    /// Whether one of the triangles of a shortlist shows that the surface around the nearest place of another goes on
-    /// nearer.
-    #[inline]
-    fn is_beside(&self, triangles: &[u32], (pairs, first): (&Pairs, usize), (number, part): (usize, usize)) -> bool {
-        let (triangle, farthest) = (triangles[number], NEARER * pairs.distance(first + number).0);
-        triangles.iter().enumerate().any(|(place, &other)| {
-            place != number && pairs.distance(first + place).0 < farthest && self.shares_part(other, triangle, part)
-        })
-    }
-
-    /// Whether any triangle that shares a part of one is nearer to a place than a distance (m): those that do are not
-    /// all in shortlists.
+    /// Whether any triangle that shares a part of one is nearer to a place than a distance (m).
     fn goes_on_nearer(&self, (places, at): (&[DVec3], DVec3), (triangle, part): (u32, usize), distance: f64) -> bool {
         let mut others = self.around_part(triangle, part).filter(|&other| other != triangle);
         others.any(|other| at.distance(OnTriangle::nearest(at, self.corners(places, other)).at) < distance)

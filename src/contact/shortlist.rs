@@ -1,7 +1,7 @@
 //! Which triangles of a point's list matter: most are behind others that are nearer, and stay so while little moves.
 
 /// So many triangles at most; points with more in their way look at all of their lists.
-const MOST: usize = 13;
+pub(super) const MOST: usize = 13;
 
 /// Numbers of a shortlist that is not known.
 const NONE: u8 = u8::MAX;
@@ -58,12 +58,6 @@ impl Shortlist {
     #[inline]
     pub fn is_known(&self) -> bool {
         self.count != NONE
-    }
-
-    /// How many they are; none where they are not known.
-    #[inline]
-    pub fn count(&self) -> usize {
-        self.triangles().map_or(0, <[u32]>::len)
     }
 
     /// The triangles, if they are known.

@@ -3,12 +3,10 @@
 use super::motion::update_normals;
 use super::{Surface, SurfaceContacts};
 use crate::backend::cpu::Cpu;
-use crate::contact::{Faced, Kept, Listed, Own, Pairs, Placed, Shortlist, Stays};
+use crate::contact::{Faced, Kept, Listed, Own, Placed, Shortlist, Stays};
 
-/// Points that a task looks at, and of how many at once it is found where their triangles are nearest: their numbers
-/// stay in the nearest cache.
+/// Points that a task looks at.
 const POINTS_A_TASK: usize = 128;
-const POINTS_AT_ONCE: usize = 32;
 
 /// Where more than one of so many points goes through its list, the normals of all that is near are found beforehand:
 /// else few are asked for.
@@ -22,13 +20,6 @@ pub(super) struct Found {
     pub faced: Faced,
 }
 
-/// Room for what a task looks at, so that the next step need not ask for memory.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Room {
-    pairs: Pairs,
-    kept: Kept,
-}
-
 /// Some points that are awake, and what is kept of these in the lists and of those between.
 struct Awake<'a> {
     found: &'a mut [Found],
@@ -36,13 +27,12 @@ struct Awake<'a> {
     first: usize,
     shortlists: &'a mut [Shortlist],
     wake: &'a mut [f64],
-    room: &'a mut Room,
+    kept: &'a mut Kept,
 }
 
 /// What is the same for all points in a step.
 struct Looking<'a> {
     contacts: &'a SurfaceContacts,
-    cpu: &'a Cpu,
     now: Placed<'a>,
     /// How far faces are looked at that a point of a body meets of a body (m), at their numbers as in
     /// [`SurfaceContacts::meetings`].
@@ -88,11 +78,11 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
     if has_normals {
         update_normals(surface, cpu);
     }
-    let mut rooms = std::mem::take(&mut surface.rooms);
+    let mut kept = std::mem::take(&mut surface.kept_by_task);
     let mut reaches = std::mem::take(&mut surface.reaches);
     let mut shortlists = std::mem::take(&mut surface.shortlists);
     let mut wake = std::mem::take(&mut surface.wake);
-    rooms.resize_with(rooms.len().max(found.len().div_ceil(POINTS_A_TASK)), Room::default);
+    kept.resize_with(kept.len().max(found.len().div_ceil(POINTS_A_TASK)), Kept::default);
     reaches.clear();
     let meetings = contacts.meetings.iter();
     reaches.extend(meetings.map(|meeting| reach + meeting.map_or(0.0, |meeting| meeting.thickness)));
@@ -101,60 +91,49 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
     let surface = &contacts.surface;
     let normals = if has_normals { &surface.normals[..] } else { &[] };
     let now = Placed { places: &surface.places, normals };
-    let looking = Looking { contacts, cpu, now, reaches: &reaches, nearer, farthest, stays };
+    let looking = Looking { contacts, now, reaches: &reaches, nearer, farthest, stays };
     let mut left = (0, &mut shortlists[..], &mut wake[..]);
-    let tasks = found.chunks_mut(POINTS_A_TASK).zip(&mut rooms).map(|(found, room)| {
+    let tasks = found.chunks_mut(POINTS_A_TASK).zip(&mut kept).map(|(found, kept)| {
         let (first, shortlists, wake) = std::mem::take(&mut left);
         // places ascend
         let end = found.last().map_or(first, |last| last.place as usize + 1);
         let (shortlists, shortlists_left) = shortlists.split_at_mut(end - first);
         let (wake, wake_left) = wake.split_at_mut(end - first);
         left = (end, shortlists_left, wake_left);
-        Awake { found, first, shortlists, wake, room }
+        Awake { found, first, shortlists, wake, kept }
     });
     cpu.for_each(tasks, |awake| looking.face(awake));
     let surface = &mut contacts.surface;
     let first = found.iter().map(|found| found.faced.wakes).fold(surface.first_wake, f64::min);
-    (surface.found, surface.rooms, surface.reaches) = (found, rooms, reaches);
+    (surface.found, surface.kept_by_task, surface.reaches) = (found, kept, reaches);
     (surface.shortlists, surface.wake, surface.first_wake) = (shortlists, wake, first);
 }
 
 impl Looking<'_> {
     /// Finds what some points face.
-    fn face(&self, Awake { found, first, shortlists, wake, room: Room { pairs, kept } }: Awake<'_>) {
+    fn face(&self, Awake { found, first, shortlists, wake, kept }: Awake<'_>) {
         let Looking { contacts, now, .. } = *self;
         let (surface, edge, mut own) = (&contacts.surface, contacts.edge, Own::default());
-        for found in found.chunks_mut(POINTS_AT_ONCE) {
-            pairs.clear();
-            for Found { place, .. } in &*found {
-                let point = &surface.points[surface.lists.points[*place as usize] as usize];
-                surface.triangles.ask(now.places, point, &shortlists[*place as usize - first], pairs);
+        for Found { place, faced } in found {
+            let place = *place as usize;
+            let (point, short) =
+                (&surface.points[surface.lists.points[place] as usize], &mut shortlists[place - first]);
+            let of_point = &self.reaches[point.body as usize * contacts.bodies.len()..];
+            let reach = |triangle: u32| of_point[surface.triangles.bodies[triangle as usize] as usize];
+            let at_a_glance = (self.nearer, reach, edge);
+            let seen = (&mut *faced, &mut own);
+            if !surface.triangles.faced_at_a_glance((now, point, short), at_a_glance, seen) {
+                let (triangles, distances) = (surface.lists.triangles(place), surface.lists.distances(place));
+                let listed = Listed { triangles, distances, nearer: self.nearer, farthest: self.farthest };
+                let moved = surface.neighbourhoods.stays(place) + self.stays.moved;
+                let (stays, kept) = (Stays { moved, ..self.stays }, (&mut *faced, &mut *kept));
+                surface.triangles.faced((now, point), listed, (reach, edge), (short, stays), kept);
             }
-            pairs.find(self.cpu);
-            let mut pair = 0;
-            for Found { place, faced } in found {
-                let place = *place as usize;
-                let (point, short) =
-                    (&surface.points[surface.lists.points[place] as usize], &mut shortlists[place - first]);
-                let of_point = &self.reaches[point.body as usize * contacts.bodies.len()..];
-                let reach = |triangle: u32| of_point[surface.triangles.bodies[triangle as usize] as usize];
-                let asked = (&*pairs, pair);
-                pair += short.count();
-                let at_a_glance = (self.nearer, reach, edge);
-                let seen = (&mut *faced, &mut own);
-                if !surface.triangles.faced_at_a_glance((now, point, short), asked, at_a_glance, seen) {
-                    let (triangles, distances) = (surface.lists.triangles(place), surface.lists.distances(place));
-                    let listed = Listed { triangles, distances, nearer: self.nearer, farthest: self.farthest };
-                    let moved = surface.neighbourhoods.stays(place) + self.stays.moved;
-                    let (stays, kept) = (Stays { moved, ..self.stays }, (&mut *faced, &mut *kept));
-                    surface.triangles.faced((now, point), listed, (reach, edge), (short, stays), kept);
-                }
-                if point.triangle.is_some() {
-                    let both = [&mut faced.first, &mut faced.second];
-                    both.into_iter().flatten().for_each(|facing| facing.gap = surface.gap_of_facet(point, facing));
-                }
-                wake[place - first] = faced.wakes;
+            if point.triangle.is_some() {
+                let both = [&mut faced.first, &mut faced.second];
+                both.into_iter().flatten().for_each(|facing| facing.gap = surface.gap_of_facet(point, facing));
             }
+            wake[place - first] = faced.wakes;
         }
     }
 }

@@ -1,7 +1,6 @@
 #![allow(clippy::expect_used)]
 
 use super::*;
-use crate::backend::cpu::Cpu;
 
 /// What a point faces by its shortlist, which is known, and whether that is seen at a glance: then the same.
 pub(in crate::contact) fn by_shortlist(
@@ -11,19 +10,15 @@ pub(in crate::contact) fn by_shortlist(
     reach: &impl Fn(u32) -> f64,
     short: &Shortlist,
 ) -> (Faced, bool) {
-    let (mut pairs, mut same) = (Pairs::default(), *short);
+    let mut same = *short;
     let [mut chosen, mut seen] = [Faced::NOTHING; 2];
     let kept = (&mut chosen, &mut Kept::default());
     surfaces.faced((now, point), listed, (reach, 1.0), (&mut same, Stays::default()), kept);
-    // behind those of others
-    pairs.add(DVec3::ZERO, [DVec3::X, DVec3::Y, DVec3::Z]);
-    surfaces.ask(now.places, point, short, &mut pairs);
-    pairs.find(&Cpu::new(1, 0, Default::default()));
     // with normals that are known, and with those that are asked for
     let mut is_all = [now.normals, &[][..]].into_iter().map(|normals| {
         let of = (Placed { normals, ..now }, point, short);
         let seen = (&mut seen, &mut Own::default());
-        surfaces.faced_at_a_glance(of, (&pairs, 1), (listed.nearer, reach, 1.0), seen)
+        surfaces.faced_at_a_glance(of, (listed.nearer, reach, 1.0), seen)
     });
     let is_all = is_all.all(|is_all| is_all);
     assert!(!is_all || seen == chosen, "{seen:?}, {chosen:?}");
