@@ -23,9 +23,9 @@ use glam::DVec3;
 pub use in_step::ContactStep;
 use in_step::ToolInStep;
 use smallvec::SmallVec;
-use std::ops::Range;
 pub(crate) use solved::find as find_tool_springs;
 pub(super) use stage::{ToolNodes, stage as tool_stage};
+use std::ops::Range;
 
 /// The explicit Lagrange correction of the predicted step: each node's next step d* is predicted as `integrate` will
 /// find it, and where it would end inside a tool, the force is found that makes it end on the surface. That force is a

@@ -223,7 +223,8 @@ fn what_moves_nodes_among_the_loads_is_seen_in_its_step() {
 /// Nodes of which none is near a tool are left alone together: with the same bits as if each were looked at.
 #[test]
 fn tools_that_come_touch_and_go_do_what_they_do_node_by_node() {
-    let text = "(duration: 0.03, bodies: {\"b\": (mesh: Box(size: (0.03, 0.03, 0.02), cells: (9, 9, 7), elements: Hex8),
+    let text =
+        "(duration: 0.03, bodies: {\"b\": (mesh: Box(size: (0.03, 0.03, 0.02), cells: (9, 9, 7), elements: Hex8),
             material: \"m\")},
         materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))},
         constraints: [Fixed(on: Set(\"z0\"))], integration: (step: 2e-4),
@@ -235,7 +236,7 @@ fn tools_that_come_touch_and_go_do_what_they_do_node_by_node() {
             \"plate\": (shape: Plane(), path: [(t: 0, at: (0.05, 0, 0), TURNED), (t: 0.008, at: (0.0302, 0, 0), TURNED),
                 (t: 0.013, at: (0.0298, 0, 0), TURNED), (t: 0.017, at: (0.0302, 0, 0), TURNED),
                 (t: 0.024, at: (0.05, 0, 0), TURNED)])})"
-        .replace("TURNED", "rotation: (0, -90, 0)");
+            .replace("TURNED", "rotation: (0, -90, 0)");
     for precision in [Precision::F64, Precision::F32] {
         let mut touched = Vec::new();
         let ends = [true, false].map(|together| {
