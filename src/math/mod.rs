@@ -31,6 +31,5 @@ pub use rows::{Rows, Scratch};
 pub use simd::{F32s, F64s, LANES, lane_place};
 #[doc(hidden)]
 pub use tensor::{dot, dot_plus, minor};
-pub(crate) use triangle::Nearest;
 #[doc(hidden)]
 pub use triangle::OnTriangle;

@@ -335,7 +335,7 @@ fn all_sleep(passes: &mut [ScheduledPass], step: u64, world: &mut World) -> Resu
     answered?;
     if !asleep {
         // who answers and then does something has run once
-        passes.iter_mut().for_each(|pass| pass.runs -= 1);
+        passes.iter_mut().filter(|pass| pass.is_due(step)).for_each(|pass| pass.runs -= 1);
     }
     Ok(asleep)
 }
@@ -354,11 +354,16 @@ impl ScheduledPass {
     }
 
     /// Runs a host system if this is one of its steps.
+    /// Whether it is run in a step, if the host runs it.
+    fn is_due(&self, step: u64) -> bool {
+        matches!(&self.job, Job::Host { interval, .. } if interval.is_due(step))
+    }
+
     pub(super) fn run_on_host(&mut self, step: u64, world: &mut World) -> Result<(), Error> {
-        let Job::Host { system, interval, .. } = &mut self.job else { return Ok(()) };
-        if !interval.is_due(step) {
+        if !self.is_due(step) {
             return Ok(());
         }
+        let Job::Host { system, .. } = &mut self.job else { return Ok(()) };
         let started = Instant::now();
         let writing = |world: &World| world.get_resource::<Observer>().map_or(Duration::ZERO, |seen| seen.writing);
         let before = writing(world);
