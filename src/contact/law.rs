@@ -239,8 +239,8 @@ impl ContactSet {
         cpu.dispatch(Forces { contacts, forces });
     }
 
-    /// Kinetic energy (J) that one sweep has given beyond what it can, from contacts as they were `before` that; 0 where
-    /// it has not, but for rounding.
+    /// Kinetic energy (J) that one sweep has given beyond what it can, from contacts as they were `before`; 0 where it
+    /// has not, but for rounding.
     ///
     /// That is at most Σ (g² − (n · r*)²)/(2D) + s²/(2D') over the contacts that press, r* the steps that were
     /// predicted, s what has slipped elastically: a point that is not inside takes energy, and one that is gives back
