@@ -1,7 +1,7 @@
 //! What a product with the tangent stiffness costs as a difference of forces, a pass over all elements, beside one with
 //! a matrix that has been put together before: `cargo bench --bench products`. By turns, the best of each, one thread.
-//! The matrix has blocks of 3 × 3 for each pair of nodes that share an element, in the order of a grid; what it takes to
-//! put it together is not counted.
+//! The matrix has blocks of 3 × 3 for each pair of nodes that share an element, in the order of a grid; what it takes
+//! to put it together is not counted.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use sinew::components::Precision;
