@@ -129,8 +129,7 @@ impl Surfaces {
 
     /// What a point faces among the triangles of its list that are no farther than `reach` (m), and which of them
     /// matter as long as nodes move no farther than a shortlist allows for; where that is known, the others are not
-    /// looked at.
-    /// `edge` is the length of an edge (m).
+    /// looked at. `edge` is the length of an edge (m).
     #[inline(never)] // all points would make room for what few need
     pub fn faced(
         &self,

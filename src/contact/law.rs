@@ -1,5 +1,7 @@
 //! The law of contact between bodies: the impulses that keep predicted steps from ending inside one another.
 
+mod tasks;
+
 use super::parts::Parts;
 use crate::backend::cpu::Cpu;
 use glam::{DVec3, DVec4};
@@ -320,6 +322,5 @@ impl ContactSet {
     }
 }
 
-mod tasks;
 #[cfg(test)]
 mod tests;

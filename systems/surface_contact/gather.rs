@@ -147,7 +147,7 @@ pub(super) fn gather<T: Scalar>(
     bodies: &mut [BodySlices<'_, T>],
 ) {
     let surface = &contacts.surface;
-    for Found { place, faced, .. } in found {
+    for Found { place, faced } in found {
         let number = surface.lists.points[*place as usize];
         let point = &surface.points[number as usize];
         let kept = contacts.kept(number);
