@@ -5,7 +5,6 @@ pub mod driver;
 mod error;
 pub mod materials;
 pub mod math;
-pub mod mesh;
 pub mod port;
 pub mod scene;
 mod simulation;
@@ -38,6 +37,9 @@ pub mod uniform;
 pub use bevy_ecs;
 pub use glam;
 pub use serde;
+/// Meshes: generators, files, topology.
+#[doc(inline)]
+pub use sinew_mesh as mesh;
 
 pub use backend::gpu::{Host, NoGpu};
 pub use error::{Error, GpuFailure, Instability, NotConverged, NotUnloaded};

@@ -3,10 +3,10 @@
 use super::{Assembly, PlacedMesh};
 use crate::components::AlsoWritten;
 use crate::mesh::Mesh;
+use crate::mesh::Triangles;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Body, SkinFile};
 use crate::skins::Skin;
-use crate::tools::Triangles;
 use bevy_ecs::prelude::*;
 
 /// Gives a body its skin, where the scene has one for it.

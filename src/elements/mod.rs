@@ -1,7 +1,7 @@
 //! Finite elements: displacement gradients from nodal displacements, nodal forces from stress.
 //!
 //! An element is one Rust file with its WGSL twin of the same stem in `shaders/`, and one line of the list in
-//! `src/mesh/generators/mod.rs`.
+//! `crates/mesh/src/generators/mod.rs`.
 
 mod hex8;
 mod hex8_mean_dilatation;

@@ -2,7 +2,7 @@
 
 use super::embedding::Embedding;
 use crate::mesh::Mesh;
-use crate::tools::Triangles;
+use crate::mesh::Triangles;
 use bevy_ecs::prelude::Component;
 use glam::DVec3;
 use std::collections::HashMap;

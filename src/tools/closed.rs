@@ -1,6 +1,6 @@
 //! Closed surfaces, with the normals by which inside and outside are told apart.
 
-use super::triangles::{SurfaceError, Triangles};
+use crate::mesh::{SurfaceError, Triangles};
 use glam::DVec3;
 use std::collections::HashMap;
 

@@ -3,7 +3,7 @@
 use super::closed::Closed;
 use super::form::{FAR, NEAR};
 use super::tree::{SLACK, Tree};
-use super::triangles::{SurfaceError, Triangles};
+use crate::mesh::{SurfaceError, Triangles};
 use glam::{DVec3, UVec3};
 use rayon::prelude::*;
 

@@ -1,20 +1,10 @@
 //! Rigid tools: shapes that touch bodies, known by the signed distance to their surface in a frame of their own.
 
-#[cfg(not(feature = "files"))]
-mod absent;
 mod closed;
 mod form;
-#[cfg(feature = "files")]
-mod gltf;
 mod grid;
 mod mass;
-#[cfg(feature = "files")]
-mod obj;
 mod pivot;
-#[cfg(feature = "files")]
-mod ply;
-#[cfg(feature = "files")]
-mod read;
 mod rigid;
 mod shape;
 mod solid;
@@ -22,7 +12,6 @@ mod surface;
 #[cfg(test)]
 mod tests;
 pub(crate) mod tree;
-mod triangles;
 
 pub use form::Form;
 pub use grid::DistanceGrid;
@@ -30,7 +19,6 @@ pub use pivot::closest_approach;
 pub use rigid::{Inertia, RigidMotion};
 pub use shape::Shape;
 pub use solid::{Problem, Solid};
-pub use triangles::{EdgeFault, SurfaceError, Triangles};
 
 use glam::DVec3;
 use std::sync::Arc;

@@ -39,9 +39,9 @@ const ABOUT: &[(&str, &str, &[&str])] = &[
     ("src/elements/hex8_mean_dilatation.rs", "made of the other element", &["Hex8", "hex8"]),
     ("src/elements/wedge6.rs", "its WGSL is that of several points", &["hex8_mean_dilatation"]),
     ("src/elements/tet10.rs", "its WGSL is that of several points", &["hex8_mean_dilatation"]),
-    ("src/mesh/topology/tet10.rs", "made of the cell with its corners alone", &["tet4"]),
-    ("src/mesh/measure.rs", "the volume of a tetrahedron", &["tet4"]),
-    ("src/mesh/cells.rs", "an iterator over nothing has to have a kind", &["Tet4"]),
+    ("crates/mesh/src/topology/tet10.rs", "made of the cell with its corners alone", &["tet4"]),
+    ("crates/mesh/src/measure.rs", "the volume of a tetrahedron", &["tet4"]),
+    ("crates/mesh/src/cells.rs", "an iterator over nothing has to have a kind", &["Tet4"]),
     ("crates/cli/src/bench.rs", "what pulls at cubes: the word of a benchmark's load", &["Gravity"]),
     ("crates/cli/src/arguments/suites.rs", "what is measured where nothing is said", &["tet4", "hex8"]),
 ];
@@ -57,7 +57,7 @@ fn text(file: &str) -> String {
 /// Files below the engine's folders, by their paths, with their code: no comments, no tests.
 fn engine() -> Vec<(String, String)> {
     let mut waiting: Vec<PathBuf> =
-        ["src", "systems", "crates/cli/src"].iter().map(|folder| root().join(folder)).collect();
+        ["src", "systems", "crates/mesh/src", "crates/cli/src"].iter().map(|folder| root().join(folder)).collect();
     let mut found = Vec::new();
     while let Some(path) = waiting.pop() {
         let name = path.strip_prefix(root()).unwrap().display().to_string();
@@ -139,7 +139,7 @@ fn a_law_is_a_rust_file_a_wgsl_file_and_a_line() {
 
 #[test]
 fn an_element_is_a_rust_file_a_wgsl_file_and_a_line() {
-    let (modules, kinds) = ("src/elements/mod.rs", "src/mesh/generators/mod.rs");
+    let (modules, kinds) = ("src/elements/mod.rs", "crates/mesh/src/generators/mod.rs");
     let mut wrong = BTreeSet::new();
     for (stem, rest) in list(kinds, "$then! {", "macro_rules! element_kinds") {
         let words: Vec<&str> = rest.split([',', '"', ' ']).filter(|word| !word.is_empty()).collect();
@@ -147,8 +147,8 @@ fn an_element_is_a_rust_file_a_wgsl_file_and_a_line() {
         assert!(root().join(format!("shaders/{shader}.wgsl")).exists(), "shaders/{shader}.wgsl");
         let file = format!("src/elements/{stem}.rs");
         // what a kind of cell is stands in files of its own
-        let topology = format!("src/mesh/topology/{}.rs", cell.to_lowercase());
-        wrong.extend(beside(&[kind, &stem], &[&file, &topology, modules, kinds, "src/mesh/topology/mod.rs"]));
+        let topology = format!("crates/mesh/src/topology/{}.rs", cell.to_lowercase());
+        wrong.extend(beside(&[kind, &stem], &[&file, &topology, modules, kinds, "crates/mesh/src/topology/mod.rs"]));
         wrong.extend([wrong_count(modules, &stem, 1), wrong_count(modules, kind, 0)].into_iter().flatten());
         wrong.extend([wrong_count(kinds, &stem, 1), wrong_count(kinds, kind, 1)].into_iter().flatten());
     }

@@ -4,8 +4,9 @@ use super::pair::UNIT;
 use glam::DVec3;
 use sinew::backend::gpu::{BufferKind, Gpu, gpu_or_reason};
 use sinew::backend::kernel::{Fragment, Kernel};
+use sinew::mesh::Triangles;
 use sinew::shader;
-use sinew::tools::{DistanceGrid, Shape, Solid, Triangles};
+use sinew::tools::{DistanceGrid, Shape, Solid};
 
 const MAIN: &str = "@group(0) @binding(0) var<uniform> tool: ToolShape;
 @group(0) @binding(1) var<storage, read> places: array<vec4<f32>>;

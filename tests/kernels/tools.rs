@@ -5,7 +5,8 @@ use super::pair::{Pair, UNIT, entities, run};
 use bevy_ecs::prelude::*;
 use glam::{DQuat, DVec3};
 use sinew::components::*;
-use sinew::tools::{DistanceGrid, Geometry, Shape, Solid, Triangles};
+use sinew::mesh::Triangles;
+use sinew::tools::{DistanceGrid, Geometry, Shape, Solid};
 use std::sync::Arc;
 
 /// A box as triangles.

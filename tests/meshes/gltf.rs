@@ -4,7 +4,7 @@
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use glam::DVec3;
-use sinew::tools::Triangles;
+use sinew::mesh::Triangles;
 
 /// Four places, their texture coordinates in bytes, and the corners of two triangles and of a strip that is the same.
 fn numbers() -> Vec<u8> {

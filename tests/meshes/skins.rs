@@ -2,9 +2,9 @@
 //! the rounding of weights, some 1e-15 of the body's size; the bounds here leave room for badly shaped elements.
 
 use glam::{DMat3, DVec3};
+use sinew::mesh::Triangles;
 use sinew::mesh::{ElementKind, Mesh, generators};
 use sinew::skins::{Embedding, Skin, normals};
-use sinew::tools::Triangles;
 use std::collections::HashMap;
 
 /// Numbers between -1 and 1, the same in every run.

@@ -2,8 +2,8 @@
 
 use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, near};
 use glam::{DMat3, DVec3};
+use sinew::mesh::Triangles;
 use sinew::scene::{SceneFile, validate};
-use sinew::tools::Triangles;
 use sinew::{Folder, Simulation, Snapshot};
 use std::collections::BTreeMap;
 

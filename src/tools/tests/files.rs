@@ -1,8 +1,8 @@
 //! Files of triangles, good ones and bad ones.
 
-use super::super::{DistanceGrid, Shape, Solid, Triangles};
+use super::super::{DistanceGrid, Shape, Solid};
 use super::{assert_closed, volume};
-use crate::mesh::{FilePosition, MeshError};
+use crate::mesh::{FilePosition, MeshError, Triangles};
 use glam::DVec3;
 
 fn tube() -> Triangles {

@@ -1,8 +1,9 @@
 //! Distances on grids, against closed forms and against triangles one by one.
 
 use super::super::closed::Closed;
-use super::super::{DistanceGrid, Geometry, Shape, Solid, SurfaceError, Triangles};
+use super::super::{DistanceGrid, Geometry, Shape, Solid};
 use super::{corners, place, to_triangles, winding};
+use crate::mesh::{SurfaceError, Triangles};
 use glam::DVec3;
 use std::f64::consts::TAU;
 use std::sync::Arc;

@@ -8,8 +8,9 @@ use glam::{DMat3, DQuat, DVec3, Vec3};
 use sinew::SceneFile;
 use sinew::assembly::motion;
 use sinew::components::{Key, Pose, ToolMotion};
+use sinew::mesh::Triangles;
 use sinew::scene::schema::{self, Analysis, Curve, Quantity, Shape, ToolMesh};
-use sinew::tools::{Solid, Triangles};
+use sinew::tools::Solid;
 use std::path::Path;
 
 /// The tools of a scene as pictures show them.

@@ -1,0 +1,40 @@
+//! Pieces of a mesh: cells that hang together by nodes which they share.
+
+use super::Cells;
+
+/// The piece of a cell that is not there.
+pub const NO_PIECE: u32 = u32::MAX;
+
+impl Cells {
+    /// For each cell the lowest node of its piece, that of all cells which are reached from it over nodes that cells
+    /// share which are there; `NO_PIECE` for those that are not. `points`: how many nodes there are.
+    #[doc(hidden)]
+    pub fn pieces(&self, points: usize, is_there: impl Fn(usize) -> bool) -> Vec<u32> {
+        let mut lower: Vec<u32> = (0..points as u32).collect();
+        for (_, (_, nodes)) in self.iter().enumerate().filter(|(cell, _)| is_there(*cell)) {
+            for pair in nodes.windows(2) {
+                let (a, b) = (lowest(&mut lower, pair[0]), lowest(&mut lower, pair[1]));
+                lower[a.max(b) as usize] = a.min(b);
+            }
+        }
+        let cells = self.iter().enumerate();
+        let pieces = cells.map(|(cell, (_, nodes))| match nodes.first() {
+            Some(&node) if is_there(cell) => lowest(&mut lower, node),
+            _ => NO_PIECE,
+        });
+        pieces.collect()
+    }
+}
+
+/// The lowest node that one is known to hang together with; ways there become shorter.
+pub fn lowest(lower: &mut [u32], mut node: u32) -> u32 {
+    while lower[node as usize] != node {
+        let next = lower[node as usize];
+        lower[node as usize] = lower[next as usize];
+        node = next;
+    }
+    node
+}
+
+#[cfg(test)]
+mod tests;
