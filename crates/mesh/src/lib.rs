@@ -1,9 +1,9 @@
 //! Meshes as authors give them: points, elements and named sets in the author's order and numbering; surfaces of
 //! triangles.
 //!
-//! A [`Mesh`] is what generators make and files hold; the engine, whose `sinew::mesh` this is, renumbers it for locality
-//! when a body is built from it. Files (Gmsh, VTK, VTU; STL, OBJ, PLY and glTF of triangles) are read with the feature
-//! `files`.
+//! A [`Mesh`] is what generators make and files hold; the engine, whose `sinew::mesh` this is, renumbers it for
+//! locality when a body is built from it. Files (Gmsh, VTK, VTU; STL, OBJ, PLY and glTF of triangles) are read with the
+//! feature `files`.
 
 #[cfg(not(feature = "files"))]
 mod absent;
