@@ -94,7 +94,8 @@ fn products_are_those_of_the_closed_form_and_symmetric() {
     }
 }
 
-/// A block that may slide on the plane z = 0, and one that nothing holds; what preconditions them where a step is 0.01 s.
+/// A block that may slide on the plane z = 0, and one that nothing holds; what preconditions them where a step is
+/// 0.01 s.
 fn two_blocks() -> (Simulation, TwoLevelParts) {
     let mut simulation = start(
         "(duration: 1, solver: Implicit(),
