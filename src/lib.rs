@@ -58,6 +58,8 @@ pub use snapshot::Snapshot;
 pub use backend::gpu::gpu_or_reason;
 #[doc(hidden)]
 pub use error::shell_word;
+#[doc(hidden)]
+pub use simulation::TwoLevelParts;
 
 /// What systems of one's own are written with: `use sinew::prelude::*;`.
 ///

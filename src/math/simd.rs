@@ -73,7 +73,7 @@ pub trait SimdScalar: Scalar {
 
 macro_rules! vector {
     ($name:ident, $scalar:ty, $raw:ident, $lanes:ident, $load:ident, $store:ident, $splat:ident, $add:ident, $sub:ident,
-     $mul:ident, $div:ident, $neg:ident, $max:ident, $mul_add:ident, $guess:ident, $steps:expr, $min:ident, $sqrt:ident,
+     $mul:ident, $div:ident, $xor:ident, $max:ident, $mul_add:ident, $guess:ident, $steps:expr, $min:ident, $sqrt:ident,
      $above:ident, $select:ident, $to_bits:ident, $from_bits:ident, $power:ident, $split:ident, $load_rows:ident, $add_rows:ident,
      $load_part:ident, $store_part:ident, $broadcast3:ident) => {
         #[doc = concat!("A register of `", stringify!($scalar), "`.")]
@@ -128,7 +128,8 @@ macro_rules! vector {
             type Output = Self;
             #[inline(always)]
             fn neg(self) -> Self {
-                self.with(self.simd.$neg(self.value))
+                // its sign; pulp's own negation is a call, which no compiler puts in place
+                self.with(self.simd.$xor(self.value, self.simd.$splat(-0.0)))
             }
         }
         impl<S: Simd> AddAssign for $name<S> {
@@ -335,7 +336,7 @@ vector!(
     sub_f32s,
     mul_f32s,
     div_f32s,
-    neg_f32s,
+    xor_f32s,
     max_f32s,
     mul_add_e_f32s,
     guess_f32s,
@@ -366,7 +367,7 @@ vector!(
     sub_f64s,
     mul_f64s,
     div_f64s,
-    neg_f64s,
+    xor_f64s,
     max_f64s,
     mul_add_e_f64s,
     guess_f64s,

@@ -69,6 +69,8 @@ pub use contact_use::SurfaceContactUse;
 pub use follow::StepHistory;
 pub use gpu_column::GpuColumn;
 pub use grab::{Grab, GrabId, Grip};
+#[doc(hidden)]
+pub use implicit::TwoLevelParts;
 pub use implicit::{ImplicitSteps, PathPoint};
 pub use inputs::{InputUse, InputValue};
 pub use modes::Mode;

@@ -8,7 +8,7 @@
 //! lateral motion held: σ = −ρ c v = −33.7332 Pa, at the other end after L/c = .0296444 s.
 
 use crate::columns::{masses, velocities};
-use crate::configurations::{ELEMENTS, configurations, cpu_and_long_gpu, near};
+use crate::configurations::{configurations, cpu_and_long_gpu, near, with_elements};
 use sinew::Simulation;
 use std::f64::consts::PI;
 
@@ -41,7 +41,7 @@ fn bar(run: &crate::configurations::Configuration, mesh: &str, constraints: &str
 #[test]
 #[ignore = "long"]
 fn bar_held_sideways_sounds_at_8_4333_hertz() {
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&configurations(), 1) {
         let mesh = format!("size: (0.1, 0.01, 0.01), cells: (20, 2, 2), elements: {elements}");
         let mut simulation = bar(run, &mesh, "Fixed(on: All, axes: [Y, Z])", "duration: 0.7");
         let found = frequency(&mut simulation, 0, 2, |x| (PI * x / 0.2).sin());
@@ -55,7 +55,7 @@ fn bar_held_sideways_sounds_at_8_4333_hertz() {
 fn slender_bar_sounds_at_4_3301_hertz() {
     let planes =
         "Fixed(on: Plane(normal: (0, 1, 0), at: 0), axes: [Y]), Fixed(on: Plane(normal: (0, 0, 1), at: 0), axes: [Z])";
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&configurations(), 2) {
         let mesh = format!("size: (0.1, 0.005, 0.005), cells: (20, 1, 1), elements: {elements}");
         let mut simulation = bar(run, &mesh, planes, "duration: 0.7");
         let found = frequency(&mut simulation, 0, 2, |x| (PI * x / 0.2).sin());
@@ -105,7 +105,7 @@ fn spinning_bar_bears_its_centrifugal_load() {
 /// The front rings in the wake of a jump, by 1-D dispersion; means over the plateau do not.
 #[test]
 fn impact_runs_through_the_bar_at_the_speed_of_sound() {
-    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&cpu_and_long_gpu(), 0) {
         let cells = if elements == "Hex8" { "(80, 1, 1)" } else { "(40, 1, 1)" };
         let mut simulation = run.start(&format!(
             "(duration: 0.05, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.005, 0.005), cells: {cells}, elements: {elements}), material: \"m\", velocity: (-0.01, 0, 0))}},

@@ -6,7 +6,7 @@
 //! term.
 
 use crate::columns::{masses, positions, velocities};
-use crate::configurations::{ELEMENTS, configurations, cpu_and_long_gpu, near};
+use crate::configurations::{configurations, cpu_and_long_gpu, near, with_elements};
 use glam::DVec3;
 use sinew::Simulation;
 
@@ -14,7 +14,7 @@ use sinew::Simulation;
 /// n steps round by n eps at most: 1e3·1e-16 in f64; f32 sums displacements with compensation but steps without: n eps.
 #[test]
 fn free_fall_is_exact() {
-    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&cpu_and_long_gpu(), 1) {
         let mut simulation = run.start(&format!(
             "(duration: 1, bodies: {{\"b\": (mesh: Box(size: (1, 1, 1), cells: (2, 2, 2), elements: {elements}), material: \"m\", velocity: (0.5, 0, 2))}},
             materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
@@ -39,7 +39,7 @@ fn momenta(simulation: &mut Simulation) -> (DVec3, DVec3) {
 #[test]
 #[ignore = "long"]
 fn free_body_keeps_its_momentum_and_angular_momentum() {
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&configurations(), 2) {
         for effects in ["", "fibres: (eta: 2000, direction: Along(1, 2, 3)), prony: (terms: [(alpha: 0.5, tau: 0.1)])"]
         {
             let mut simulation = run.start(&format!(
@@ -115,8 +115,8 @@ fn energy_balances() {
         ),
         ("fibres", "", "", "fibres: (eta: 2000, direction: Along(1, 1, 0), tension_only: true),"),
     ];
-    for (name, constraints, loads, effects) in cases {
-        for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (turn, (name, constraints, loads, effects)) in cases.into_iter().enumerate() {
+        for (run, elements) in with_elements(&cpu_and_long_gpu(), turn) {
             let spin = if name == "fibres" { "velocity: (0.1, 0, 0), spin: (0, 3, 8)" } else { "" };
             let mut simulation = run.start(&format!(
                 "(duration: 0.2, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3), elements: {elements}), material: \"m\", {spin})}},

@@ -1,7 +1,7 @@
 //! Copies of a body go their own ways: each as the body would by itself under its own load and with its own material,
 //! to the rounding of sums in another order (1e-11 of the largest displacement in f64, 1e-4 in f32, after 300 steps).
 
-use crate::configurations::{Configuration, ELEMENTS, configurations, cpu_and_long_gpu};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, with_elements};
 use glam::DVec3;
 use sinew::{Error, Simulation};
 
@@ -26,20 +26,20 @@ fn load(force: f64, more: &str) -> String {
 #[test]
 #[ignore = "long"]
 fn copies_do_what_the_body_does_by_itself() {
-    for run in configurations() {
-        for elements in ELEMENTS {
-            // at the same place and apart, along x, so that the plane picks the ends of all
-            for apart in ["", "apart: (0.05, 0, 0)"] {
-                let many = end(&run, elements, &format!("copies: 5, {apart}"), &load(0.01, "per_copy: Linear(-1, 1),"));
-                let nodes = many.len() / 5;
-                for (copy, factor) in [(0, -1.0), (2, 0.0), (3, 0.5), (4, 1.0)] {
-                    let one = end(&run, elements, "", &load(0.01 * factor, ""));
-                    assert_eq!(one.len(), nodes);
-                    let largest = many.iter().map(|u| u.length()).fold(0.0, f64::max);
-                    let own = &many[copy * nodes..(copy + 1) * nodes];
-                    let off = own.iter().zip(&one).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max) / largest;
-                    assert!(largest > 1e-4 && off <= run.bound(1e-11, 1e-4), "{} {elements} {copy}: {off:e}", run.name);
-                }
+    let runs = configurations();
+    for (run, elements) in with_elements(&runs, 0) {
+        let by_itself = [(0, -1.0), (2, 0.0), (3, 0.5), (4, 1.0)]
+            .map(|(copy, factor)| (copy, end(run, elements, "", &load(0.01 * factor, ""))));
+        // at the same place and apart, along x, so that the plane picks the ends of all
+        for apart in ["", "apart: (0.05, 0, 0)"] {
+            let many = end(run, elements, &format!("copies: 5, {apart}"), &load(0.01, "per_copy: Linear(-1, 1),"));
+            let nodes = many.len() / 5;
+            let largest = many.iter().map(|u| u.length()).fold(0.0, f64::max);
+            for (copy, one) in &by_itself {
+                assert_eq!(one.len(), nodes);
+                let own = &many[copy * nodes..(copy + 1) * nodes];
+                let off = own.iter().zip(one).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max) / largest;
+                assert!(largest > 1e-4 && off <= run.bound(1e-11, 1e-4), "{} {elements} {copy}: {off:e}", run.name);
             }
         }
     }
@@ -115,10 +115,8 @@ fn copies_of_materials_of_their_own_do_what_each_does_by_itself() {
 #[test]
 #[ignore = "long"]
 fn copies_of_materials_of_their_own_do_so_with_all_elements() {
-    for run in configurations() {
-        for elements in ELEMENTS {
-            each_goes_as_by_itself(&run, elements, STEPS, run.bound(1e-11, 1e-4));
-        }
+    for (run, elements) in with_elements(&configurations(), 1) {
+        each_goes_as_by_itself(run, elements, STEPS, run.bound(1e-11, 1e-4));
     }
 }
 

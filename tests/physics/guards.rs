@@ -1,7 +1,7 @@
 //! The guards: samples see what energies and fields say, limits end a run and warn, and nothing that is no number is
 //! found late or written.
 
-use crate::configurations::{configurations, cpu_and_long_gpu, scene_of};
+use crate::configurations::{configurations, cpu_and_long_gpu, scene_of, with_elements};
 use sinew::bevy_ecs::prelude::*;
 use sinew::components::*;
 use sinew::observation::{HOST_GUARD_STEPS, sample};
@@ -26,9 +26,7 @@ fn scene(elements: &str, effects: &str, further: &str) -> String {
 fn samples_see_the_energies_and_the_most_squeezed_element() {
     let fibres = "fibres: (eta: 2000, direction: Around(center: (0.05, -0.1, 0), axis: (0, 0, 1))),
         exponential_fibres: [(k1: 500, k2: 0.5, direction: Along(1, 1, 0))],";
-    for (run, elements) in
-        configurations().iter().flat_map(|run| crate::configurations::ELEMENTS.map(|elements| (run, elements)))
-    {
+    for (run, elements) in with_elements(&configurations(), 1) {
         let gravity = "loads: [Gravity(acceleration: (0, 0, -9.81))], constraints: [Fixed(on: Set(\"z0\"))],
             removal: [(on: Sphere(center: (0.1, 0.1, 0.1), radius: 0.03), when: At(0.01))],";
         for (effects, further) in [("", ""), (fibres, gravity)] {

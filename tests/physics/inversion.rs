@@ -4,7 +4,7 @@
 //! A cube of .1 m, damped at 40/s: its slowest motion, of some 15 rad/s, dies in a second to 1e-6 of itself. What is
 //! farther than 1e-3 of the cube from its place after that is held there by a false equilibrium.
 
-use crate::configurations::{ELEMENTS, configurations, cpu_and_long_gpu, near};
+use crate::configurations::{configurations, cpu_and_long_gpu, near, with_elements};
 
 const SIZE: f64 = 0.1;
 
@@ -34,7 +34,7 @@ fn confined_stress(stretch: f64) -> f64 {
 #[test]
 fn cube_squeezed_by_95_percent_pushes_as_the_law_says_and_comes_back() {
     let sides = "Fixed(on: Plane(normal: (1, 0, 0), at: 0.1), axes: [X]), Fixed(on: Plane(normal: (0, 1, 0), at: 0.1), axes: [Y]),";
-    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&cpu_and_long_gpu(), 2) {
         for confined in [true, false] {
             // software devices are slow; elements of second order tangle, as coarse Tet4 do
             if !confined && (run.name.starts_with("GPU") || elements == "Tet10") {
@@ -83,7 +83,7 @@ fn cube_pulled_through_itself_recovers_is_lost_or_stops_the_run_as_its_material_
         "stable_neo_hookean: Young(young: 3e3, poisson: 0.45)",
         "neo_hookean: Young(young: 3e3, poisson: 0.45), inversion: ",
     );
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&configurations(), 0) {
         let what = format!("{}, {elements}", run.name);
         let mut simulation = run.start(&standing(elements, stable, "", PULLED, 0.4));
         simulation.advance_to(1.2).unwrap();
@@ -117,7 +117,7 @@ fn cube_pulled_through_itself_recovers_is_lost_or_stops_the_run_as_its_material_
 #[test]
 fn mirrored_cube_stands_up_again() {
     let start = "start: Affine(gradient: ((0, 0, 0), (0, 0, 0), (0, 0, -1.5)))";
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&configurations(), 1) {
         // elements of second order tangle on the way
         if run.name.starts_with("GPU") && elements != "Tet4" || elements == "Tet10" {
             continue;
@@ -143,7 +143,7 @@ fn elements_of_the_linear_law_are_inside_out_where_their_volume_is() {
     let linear = "linear: Young(young: 3e3, poisson: 0.45)";
     let moved = |gradient: &str| format!("Prescribed(on: All, gradient: {gradient}, curve: Ramp(end: 0.5))");
     let (inverted, squeezed) = ("((0.9, 0, 0), (0, 0, 0), (0, 0, -1.5))", "((0.3, 0, 0), (0, 0, 0), (0, 0, -0.5))");
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&configurations(), 2) {
         let what = format!("{}, {elements}", run.name);
         let mut simulation = run.start(
             &standing(elements, linear, "", &moved(inverted), 0.4)

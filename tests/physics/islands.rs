@@ -2,7 +2,7 @@
 //!
 //! Volumes are whole cells of 1 m³, masses 1000 kg each: both to 1e-9 (f64) and 1e-4 (f32).
 
-use crate::configurations::{ELEMENTS, configurations, cpu_and_long_gpu, near, scene_of};
+use crate::configurations::{ELEMENTS, configurations, cpu_and_long_gpu, near, scene_of, with_elements};
 use glam::DVec3;
 use sinew::components::DisplacementIncrement;
 use sinew::{Options, Simulation};
@@ -30,7 +30,7 @@ fn gone(simulation: &mut Simulation) -> f64 {
 #[test]
 #[ignore = "long"]
 fn islands_below_a_crumb_go_at_once_and_count_as_taken_in() {
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&configurations(), 0) {
         let what = format!("{}, {elements}", run.name);
         let bound = run.bound(1e-9, 1e-4);
         // cells in reach: their centroids are 1.5 m beside the ball's middle and 1.3 m below, 1.48 m from its surface
@@ -93,7 +93,7 @@ fn a_crumb_is_four_mean_elements_where_nothing_is_said() {
 /// Total momentum: that of what moves and what went with elements.
 #[test]
 fn momentum_that_goes_with_elements_is_booked() {
-    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&cpu_and_long_gpu(), 1) {
         let scene = cut(elements, "reach: 1.9, rate: 1e-9, crumb: 1.01")
             .replace("constraints: [Fixed(on: Plane(normal: (1, 0, 0), at: 0))],", "")
             .replace("material: \"m\")", "material: \"m\", velocity: (0.3, -0.1, 0.2), spin: (0, 0, 0.2))")
@@ -135,7 +135,7 @@ fn steps(simulation: &mut Simulation) -> Vec<DVec3> {
 /// before; elsewhere it may be stretched as it likes.
 #[test]
 fn a_threshold_takes_what_is_stretched_in_the_tool() {
-    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&cpu_and_long_gpu(), 2) {
         // uniaxial strain: the stretch is 1 + t, the energy density of Young(3e3, 0) with λ = 0, μ = 1500 exceeds 100
         // J/m³ at a stretch between 1.2 and 1.4
         for (threshold, before, after) in [("StretchAbove(1.3)", 0.27, 0.33), ("EnergyDensityAbove(100)", 0.2, 0.4)] {

@@ -4,7 +4,7 @@
 //! Bounds: sums of 50 to 100 terms: 1e-13 in f64, 1e-5 in f32 of the largest force.
 
 use crate::columns::{external_forces, positions};
-use crate::configurations::{Configuration, ELEMENTS, configurations, cpu_and_long_gpu};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, with_elements};
 use crate::random::{Random, rows};
 use glam::{DMat3, DVec3};
 use sinew::Simulation;
@@ -62,7 +62,7 @@ fn nodal_forces_are_each_or_in_total_what_the_scene_says() {
 
 #[test]
 fn gravity_is_mass_times_acceleration() {
-    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&cpu_and_long_gpu(), 0) {
         let (forces, _) = forces(run, elements, "", "Gravity(acceleration: (1, 2, -9.81))");
         let expected = DVec3::new(1.0, 2.0, -9.81) * 24.0;
         is(run, elements, forces.iter().sum(), expected, expected.length());
@@ -72,7 +72,7 @@ fn gravity_is_mass_times_acceleration() {
 #[test]
 fn pressure_all_around_exerts_no_net_force_and_no_moment_at_any_deformation() {
     let mut random = Random(51);
-    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&cpu_and_long_gpu(), 1) {
         for _ in 0..4 {
             let f = random.rotation() * random.deformation();
             let told = format!("Prescribed(on: All, gradient: {})", rows(f - DMat3::IDENTITY));
@@ -88,7 +88,7 @@ fn pressure_all_around_exerts_no_net_force_and_no_moment_at_any_deformation() {
 /// A warped surface too: free nodes of a body in motion.
 #[test]
 fn pressure_all_around_a_body_in_motion_exerts_no_net_force() {
-    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&cpu_and_long_gpu(), 2) {
         let load = "NodalForce(on: Nodes([0, 7]), force: (3, 5, -4)), NodalForce(on: Nodes([59]), force: (-6, -10, 8)), Pressure(on: Surface(), pressure: 50)";
         let mut simulation = start(run, elements, "", load);
         simulation.advance(100).unwrap();
@@ -102,7 +102,7 @@ fn pressure_all_around_a_body_in_motion_exerts_no_net_force() {
 #[ignore = "long"]
 fn pressure_follows_the_surface_and_traction_does_not() {
     let mut random = Random(52);
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&configurations(), 0) {
         for _ in 0..4 {
             let f = random.rotation() * random.deformation();
             let told = format!("Prescribed(on: All, gradient: {})", rows(f - DMat3::IDENTITY));

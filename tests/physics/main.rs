@@ -39,6 +39,7 @@ mod implicit_forms;
 mod implicit_lens;
 mod implicit_memory;
 mod implicit_orders;
+mod implicit_parts;
 mod implicit_tetrahedron;
 mod inputs;
 mod inversion;

@@ -1,6 +1,6 @@
 //! Bodies that are where others are: warned of once a pair, when and where; never of those that only touch.
 
-use crate::configurations::{ELEMENTS, configurations};
+use crate::configurations::{configurations, with_elements};
 use sinew::components::Notice;
 use sinew::output::Folder;
 use sinew::{Options, SceneFile, Simulation};
@@ -51,7 +51,7 @@ fn bodies_that_overlap_at_the_start_are_warned_of_once_and_those_beside_each_oth
         ("around", &[(2, 0.02, [0.03, 0.03, 0.03]), (1, 0.1, [0.0; 3])], true),
         ("the same", &[(2, 0.1, [0.0; 3]), (2, 0.1, [0.0; 3])], true),
     ];
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&configurations(), 1) {
         for (what, cells, overlap) in cases {
             let told = warned(&run.options, elements, cells, "");
             assert_eq!(told.len(), usize::from(overlap), "{}, {elements}, {what}: {told:?}", run.name);

@@ -6,7 +6,7 @@
 //! (what its nodes feel on a face of 1 m²), σ from the host's evaluation in f64. Bounds: figures are given to 1e-4 Pa,
 //! so 1e-7 of κ; f32 rounds E to 6e-8 of entries up to 3: 1e-5 of (κ + 2μ + 4η) = 2e4 Pa.
 
-use crate::configurations::{Configuration, ELEMENTS, configurations, near};
+use crate::configurations::{Configuration, ELEMENTS, configurations, near, with_elements};
 use sinew::Simulation;
 
 const MODULI: f64 = 2e4;
@@ -42,7 +42,7 @@ fn uniaxial_stress_is_the_closed_form() {
         near("J", ratio, listed_ratio, 1.0, 1e-7);
         near("σ", sigma, listed_sigma, MODULI, 1e-8);
         near("P", first, listed_first, MODULI, 1e-8);
-        for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+        for (run, elements) in with_elements(&configurations(), 2) {
             let (x, t) = (stretch - 1.0, lateral - 1.0);
             let told = format!("Prescribed(on: All, gradient: (({x:?}, 0, 0), (0, {t:?}, 0), (0, 0, {t:?})))");
             let mut simulation = cube(run, elements, "", &told, "duration: 0.02, integration: (step: 0.001)");
@@ -75,7 +75,7 @@ fn lateral_stretch(stretch: f64) -> f64 {
 fn stretched_cube_finds_its_width() {
     let stretch = 1.5;
     let lateral = lateral_stretch(stretch);
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&configurations(), 0) {
         let told = format!(
             "Prescribed(on: All, axes: [X], gradient: (({:?}, 0, 0), (0, 0, 0), (0, 0, 0)), curve: Smooth(end: 2)),
             Fixed(on: Plane(normal: (0, 1, 0), at: 0), axes: [Y]), Fixed(on: Plane(normal: (0, 0, 1), at: 0), axes: [Z])",
@@ -94,7 +94,7 @@ fn stretched_cube_finds_its_width() {
 #[ignore = "long"]
 fn sheared_fibres_pull_as_in_the_closed_form() {
     for (angle, expected) in [(0.0_f64, 413.7931), (45.0, 1757.7931), (90.0, 669.7931), (135.0, 797.7931)] {
-        for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+        for (run, elements) in with_elements(&configurations(), 1) {
             let (sin, cos) = angle.to_radians().sin_cos();
             let fibres = format!("fibres: (eta: 2000, direction: Along({cos:?}, {sin:?}, 0))");
             let told = "Prescribed(on: All, gradient: ((0, 0.4, 0), (0, 0, 0), (0, 0, 0)))";
@@ -124,7 +124,7 @@ fn sheared_fibres_relax_as_in_the_closed_form() {
     for (time, figure) in [(0.1, 1618.603), (0.58, 1202.2245), (1.0, 1035.6273), (10.0, 878.8966)] {
         let expected = |time: f64| 1757.7931 * (1.0 - alpha + alpha * (-time / tau).exp());
         near("the formula", expected(time), figure, MODULI, 1e-7);
-        for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+        for (run, elements) in with_elements(&configurations(), 2) {
             let mut simulation = cube(run, elements, fibres, told, "duration: 10, integration: (step: 0.005)");
             simulation.advance_to(time).unwrap();
             let what = |name: &str| format!("{}, {elements}, t = {time} s: {name}", run.name);

@@ -5,7 +5,7 @@
 //! rounding (1e-10, 1e-4 in f32).
 
 use crate::columns::{external_forces, masses, velocities};
-use crate::configurations::{Configuration, ELEMENTS, configurations, cpu_and_long_gpu, near};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, near, with_elements};
 use glam::DVec3;
 use sinew::Simulation;
 
@@ -81,7 +81,7 @@ fn criteria_take_what_passes_them_and_nothing_else() {
         (stretched, format!("EnergyDensityAbove({})", energy * 0.999), true),
         (stretched, format!("EnergyDensityAbove({})", energy * 1.001), false),
     ];
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&configurations(), 1) {
         for (gradient, when, goes) in &cases {
             let rest = format!("constraints: [Prescribed(on: All, gradient: {gradient})], removal: [(when: {when})]");
             let mut simulation = bar(run, elements, &rest);
@@ -101,7 +101,7 @@ fn criteria_take_what_passes_them_and_nothing_else() {
 #[test]
 #[ignore = "long"]
 fn island_falls_with_exactly_g_and_mass_is_booked() {
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&configurations(), 2) {
         let rest =
             "constraints: [Fixed(on: Plane(normal: (1, 0, 0), at: 0))], loads: [Gravity(acceleration: (0, 0, -9.81))],
             removal: [(on: Box(min: (2, 0, 0), max: (4, 1, 1)), when: At(0.05))]";
@@ -133,7 +133,7 @@ fn island_falls_with_exactly_g_and_mass_is_booked() {
 
 #[test]
 fn nodes_without_elements_are_inactive() {
-    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&cpu_and_long_gpu(), 0) {
         let rest = "loads: [Gravity(acceleration: (0, 0, -9.81)), NodalForce(on: All, force: (1, 0, 0))],
             removal: [(on: Box(min: (4, 0, 0), max: (6, 1, 1)), when: At(0.05))]";
         let mut simulation = bar(run, elements, rest);
@@ -160,7 +160,7 @@ fn nodes_without_elements_are_inactive() {
 #[test]
 #[ignore = "long"]
 fn faces_of_removed_elements_bear_no_load() {
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&configurations(), 1) {
         for load in [
             "Traction(on: Plane(normal: (0, 0, 1), at: 1), traction: (0, 0, -10))",
             "Pressure(on: Plane(normal: (0, 0, 1), at: 1), pressure: 10)",
@@ -219,7 +219,7 @@ fn elements_of_another_material_stay_as_they_are() {
 /// Around the hole nodal means are taken anew, of fewer elements: the energy of those that stay jumps by what their
 /// volumes differed by, and nobody counts that. No smaller step changes it.
 fn balances(rest: &str, steps: u64, removed: f64, allowed: [f64; 2]) {
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&configurations(), 2) {
         let mut simulation = bar(run, elements, rest);
         // of 1 ms, but for elements that need shorter ones on the way
         simulation.advance_to(1e-3 * steps as f64).unwrap();
@@ -257,7 +257,7 @@ fn work_on_mass_that_is_gone_stays_booked() {
 
 #[test]
 fn a_body_of_which_everything_is_removed_is_no_crash() {
-    for (run, elements) in cpu_and_long_gpu().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+    for (run, elements) in with_elements(&cpu_and_long_gpu(), 0) {
         let rest = "loads: [Gravity(acceleration: (0, 0, -9.81)), Pressure(on: Surface(), pressure: 3)], removal: [(when: At(0.05))],
             probes: {\"stress\": (what: Stress, on: All), \"u\": (what: Displacement, on: All)}";
         let mut simulation = bar(run, elements, rest);

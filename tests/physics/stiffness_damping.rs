@@ -6,7 +6,7 @@
 //! damping stress is that of the last step, so the amplitude falls by √(1 − βω²Δt) a step, not e^(−βω²Δt/2): ξ is
 //! larger by a share βω²Δt/4 at most, 1e-3 here. Its stable step is Δt = (2/ω)(√(1 + ξ²) − ξ) for the largest ω.
 
-use crate::configurations::{Configuration, ELEMENTS, configurations, cpu_and_long_gpu, near};
+use crate::configurations::{Configuration, ELEMENTS, configurations, cpu_and_long_gpu, near, with_elements};
 use crate::grids::bits;
 use sinew::{Simulation, Snapshot};
 use std::f64::consts::PI;
@@ -143,7 +143,7 @@ fn steps_that_are_found_are_stable_while_tissue_is_squeezed() {
 #[test]
 #[ignore = "long"]
 fn rigid_rotation_is_not_damped() {
-    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|e| (run, e))) {
+    for (run, elements) in with_elements(&configurations(), 2) {
         let forces = |motion: &str| {
             let mut simulation = run.start(&format!(
                 "(duration: 0.1, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2), elements: {elements}), material: \"m\")}},

@@ -51,6 +51,3 @@ pub(super) fn difference(
     trial.springs.add_product(formula.stiffness(), formula.step(), p, image);
     Ok(())
 }
-
-#[cfg(test)]
-mod tests;

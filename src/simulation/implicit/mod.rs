@@ -2,6 +2,7 @@
 //! are ([`trial`]), Newton's iterations find the place ([`newton`]), and what comes after in a step runs then.
 
 mod axes;
+mod by_parts;
 mod conjugate_gradients;
 mod device;
 mod differences;
@@ -24,6 +25,8 @@ mod trial;
 mod unsupported;
 mod work;
 
+#[doc(hidden)]
+pub use by_parts::TwoLevelParts;
 pub(super) use iterations::OfForces;
 pub use newton::PathPoint;
 pub use report::ImplicitSteps;

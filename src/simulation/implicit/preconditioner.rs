@@ -11,8 +11,7 @@ use bevy_ecs::prelude::*;
 use block_jacobi::BlockJacobi;
 pub(super) use columns::pieces;
 use glam::{DMat3, DVec3};
-use two_level::TwoLevel;
-pub(super) use two_level::{Coarse, RIGID};
+pub(super) use two_level::{Coarse, RIGID, TwoLevel};
 
 /// The operator A = D + c K of a linear solve, D diagonal (mass and damping), K the tangent stiffness of all bodies.
 /// Its rows are all axes of all nodes, bodies one after the other.

@@ -1,9 +1,8 @@
 #![allow(clippy::unwrap_used)]
 
-use super::super::preconditioner::of_name;
+use super::super::preconditioner::Identity;
 use super::*;
 use crate::backend::cpu::Cpu;
-use crate::scene::schema;
 
 /// D + a aᵀ of 40 rows.
 fn times(diagonal: &[f64], a: &[f64], p: &[f64], image: &mut [f64]) {
@@ -18,9 +17,9 @@ fn solved(diagonal: &[f64]) -> (Solved, f64) {
     let a: Vec<f64> = (0..count).map(|i| (i as f64 * 0.7).sin()).collect();
     let b: Vec<f64> = (0..count).map(|i| 1.0 + (i as f64).cos()).collect();
     let (sums, mut x) = (Sums::on(&Cpu::new(1, 0, Default::default())), vec![0.0; count]);
-    let mut preconditioner = of_name(schema::Preconditioner::Identity);
+    let mut preconditioner = Identity;
     let stop = Stop { tolerance: 1e-10, most: 200 };
-    let found = solve(&sums, &b, &mut x, &mut Vectors::default(), &mut *preconditioner, stop, |p, image| {
+    let found = solve(&sums, &b, &mut x, &mut Vectors::default(), &mut preconditioner, stop, |p, image| {
         times(diagonal, &a, p, image);
         Ok(())
     });

@@ -138,6 +138,11 @@ impl Preconditioner for TwoLevel {
 }
 
 impl TwoLevel {
+    /// Whether an aggregate has turned.
+    pub fn is_turned(&self) -> bool {
+        self.turned
+    }
+
     /// Takes the springs that touch, with aggregates as they have turned: Pᵀ of them P.
     fn touch(&mut self, operator: &Operator<'_>) {
         let place = |first: usize| self.places[first / 3].map(|place| place.map(|number| number as usize));
@@ -306,6 +311,3 @@ fn places_of(pieces: &[Piece], nodes: usize) -> Vec<Option<[u32; 2]>> {
     }
     places
 }
-
-#[cfg(test)]
-mod tests;

@@ -138,6 +138,18 @@ impl Coarse {
         })
     }
 
+    /// P: of each unknown how all axes of all bodies go with it.
+    pub fn motions(&self, free: &[bool]) -> Vec<Vec<f64>> {
+        let mut all = vec![vec![0.0; free.len()]; self.size()];
+        for (node, aggregate, arm) in self.members() {
+            for axis in (0..3).filter(|axis| free[3 * node + axis]) {
+                let ways = motions(arm, axis);
+                (0..RIGID).for_each(|i| all[RIGID * aggregate + i][3 * node + axis] = ways[i]);
+            }
+        }
+        all
+    }
+
     /// How each aggregate has turned.
     pub fn rotations(&self) -> &[DMat3] {
         &self.rotations
@@ -206,6 +218,3 @@ impl Coarse {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;
