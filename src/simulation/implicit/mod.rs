@@ -13,6 +13,7 @@ mod iterations;
 mod kept;
 mod minimal_residual;
 mod newton;
+mod place;
 mod preconditioner;
 mod report;
 mod springs;
@@ -22,6 +23,7 @@ mod step_control;
 mod sums;
 mod trial;
 mod unsupported;
+mod vectors;
 mod work;
 
 pub(super) use iterations::OfForces;

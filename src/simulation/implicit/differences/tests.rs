@@ -1,5 +1,6 @@
 #![allow(clippy::unwrap_used)]
 use super::super::axes::Axes;
+use super::super::formula::Formula;
 use super::super::springs::Springs;
 use super::*;
 use crate::components::*;
@@ -38,29 +39,29 @@ fn at(rest: [DVec3; 4], field: [DVec3; 4]) -> (DMat3, [DVec3; 4], f64) {
 }
 
 /// K p of all tetrahedra of a body by their closed form.
-fn closed_form(world: &World, body: Entity, u: &[f64], p: &[f64]) -> Vec<f64> {
+fn closed_form(world: &World, body: Entity, u: &Reals, p: &Reals) -> Reals {
     let rest = &world.get::<RestPosition>(body).unwrap().0;
-    let mut image = vec![0.0; p.len()];
+    let mut image = Reals::zeros(Precision::F64, p.len());
     for &entity in &world.get::<Authoring>(body).unwrap().blocks {
         let (block, connectivity) = (world.get::<Block>(entity).unwrap(), world.get::<Connectivity>(entity).unwrap());
         for row in 0..block.count {
             let nodes = [0, 1, 2, 3].map(|corner| connectivity[lane_place(row, 4, corner)] as usize);
-            let of = |field: &[f64]| nodes.map(|node| DVec3::from_slice(&field[3 * node..]));
+            let of = |field: &Reals| nodes.map(|node| field.vector(node));
             let rest = nodes.map(|node| rest[node]);
             let (deformed, shapes, volume) = at(rest, of(u));
             let (along, ..) = at(rest, of(p));
             let change = neo_hookean_change(DMat3::IDENTITY + deformed, along);
             for (node, shape) in nodes.into_iter().zip(shapes) {
                 let force = change * shape * volume;
-                (0..3).for_each(|i| image[3 * node + i] += force[i]);
+                image.set_vector(node, image.vector(node) + force);
             }
         }
     }
     image
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+fn dot(a: &Reals, b: &Reals) -> f64 {
+    (0..a.len()).map(|axis| a.get(axis) * b.get(axis)).sum()
 }
 
 /// Of a body that is bent, stretched and squeezed; q·Kp = p·Kq.
@@ -73,15 +74,15 @@ fn products_are_those_of_the_closed_form_and_symmetric() {
     let options = Options { precision: Precision::F64, threads: 1, ..Options::default() };
     let mut simulation = Simulation::new(&scene, &options).unwrap();
     let axes = Axes::of(&mut simulation.world);
-    let (mut motion, formula) = (Motion::default(), Formula::of(ImplicitScheme::Euler));
+    let (mut motion, formula) = (axes.motion(), Formula::of(ImplicitScheme::Euler));
     axes.read(&simulation.world, &mut motion);
     let body = axes.bodies[0];
     let bent = |x: &DVec3| DVec3::new(0.2 * x.x - 3.0 * x.x * x.z, 4.0 * x.x * x.x, -0.3 * x.z + 2.0 * x.x * x.y);
     let rest = simulation.world.get::<RestPosition>(body).unwrap().0.clone();
-    let w: Vec<f64> = rest.iter().flat_map(|x| bent(x).to_array()).collect();
-    let zeros = || vec![0.0; w.len()];
-    let (mut net, mut elsewhere, mut steps, mut springs) = (zeros(), zeros(), zeros(), Springs::default());
-    let vector = |seed: f64| -> Vec<f64> { (0..w.len()).map(|axis| (seed * (axis as f64 + 1.0)).sin()).collect() };
+    let w = Reals::F64(rest.iter().flat_map(|x| bent(x).to_array()).collect());
+    let place = Place { formula: &formula, h: 0.01, motion: &motion, correction: &w, beyond: None };
+    let (mut net, mut springs) = (axes.zeros(), Springs::default());
+    let vector = |seed: f64| Reals::F64((0..w.len()).map(|axis| (seed * (axis as f64 + 1.0)).sin()).collect());
     let (p, q) = (vector(0.37), vector(1.91));
     let mut trial = Trial {
         world: &mut simulation.world,
@@ -92,11 +93,10 @@ fn products_are_those_of_the_closed_form_and_symmetric() {
         count: 0,
         elsewhere: false,
     };
-    assert!(trial.forces(&w, None, &mut net).unwrap());
+    assert!(trial.forces(&place, &mut net).unwrap());
     let [of_p, of_q] = [&p, &q].map(|p| {
-        let mut image = zeros();
-        let of_step = (&formula, 0.01, &motion);
-        difference(&mut trial, of_step, (&w, &net), &mut elsewhere, &mut steps, p, &mut image).unwrap();
+        let mut image = axes.zeros();
+        difference(&mut trial, &place, &net, p, &mut image).unwrap();
         image
     });
     let (one, other) = (dot(&q, &of_p), dot(&p, &of_q));
@@ -104,7 +104,8 @@ fn products_are_those_of_the_closed_form_and_symmetric() {
     assert!((one - other).abs() < 1e-6 * size, "{one} and {other} of {size}");
     for (p, image) in [(&p, &of_p), (&q, &of_q)] {
         let expected = closed_form(&simulation.world, body, &w, p);
-        let off: Vec<f64> = image.iter().zip(&expected).map(|(a, b)| a - b).collect();
+        let mut off = image.clone();
+        combine(&mut off, &expected, |a, b| a - b);
         assert!(dot(&off, &off) < 1e-12 * dot(&expected, &expected), "{:e}", dot(&off, &off).sqrt());
     }
 }

@@ -1,7 +1,9 @@
 #![allow(clippy::unwrap_used)]
 use super::super::SpringSlope;
 use super::*;
+use crate::scene::schema::ImplicitScheme;
 use crate::simulation::implicit::axes::{Axes, Motion};
+use crate::simulation::implicit::formula::Formula;
 use crate::simulation::implicit::sums::Sums;
 use crate::simulation::tangent::Tangent;
 use crate::{Options, SceneFile, Simulation};
@@ -25,16 +27,15 @@ fn two_blocks() -> Simulation {
 struct Made {
     axes: Axes,
     motion: Motion,
-    inertia: Vec<f64>,
+    formula: Formula,
 }
 
 impl Made {
     fn of(simulation: &mut Simulation) -> Self {
         let axes = Axes::of(&mut simulation.world);
-        let mut motion = Motion::default();
+        let mut motion = axes.motion();
         axes.read(&simulation.world, &mut motion);
-        let inertia = motion.mass.iter().map(|mass| mass / 1e-4).collect();
-        Self { inertia, axes, motion }
+        Self { axes, motion, formula: Formula::of(ImplicitScheme::Euler) }
     }
 
     fn operator<'a>(&'a self, simulation: &'a Simulation) -> Operator<'a> {
@@ -42,30 +43,29 @@ impl Made {
             world: &simulation.world,
             bodies: &self.axes.bodies,
             free: &self.motion.free,
-            inertia: &self.inertia,
+            inertia: self.motion.inertia(&self.formula, 0.01),
             stiffness: 1.0,
             springs: &[],
         }
     }
 
-    fn vector(&self, seed: f64) -> Vec<f64> {
+    fn vector(&self, seed: f64) -> Reals {
         let number = |axis: usize| if self.motion.free[axis] { (seed * (axis as f64 + 1.0)).sin() } else { 0.0 };
-        (0..self.axes.len()).map(number).collect()
+        Reals::F64((0..self.axes.len()).map(number).collect())
     }
 }
 
 /// Turns all nodes about the z axis, and bends them.
 fn turn(simulation: &mut Simulation, made: &Made, angle: f64, bend: f64) {
     let rotation = DQuat::from_rotation_z(angle);
-    let mut places = Vec::new();
     for (body, _) in made.axes.each() {
-        let rest = &simulation.world.get::<RestPosition>(body).unwrap().0;
-        places.extend(rest.iter().flat_map(|x| {
-            let bent = *x + DVec3::new(0.0, bend * x.x * x.x, 0.0);
-            (rotation * bent - *x).to_array()
-        }));
+        let rest = simulation.world.get::<RestPosition>(body).unwrap().0.clone();
+        let mut u = simulation.world.get_mut::<Displacement>(body).unwrap();
+        for (row, x) in rest.into_iter().enumerate() {
+            let bent = x + DVec3::new(0.0, bend * x.x * x.x, 0.0);
+            u.set_vector(row, rotation * bent - x);
+        }
     }
-    made.axes.displace(&mut simulation.world, &places);
 }
 
 #[test]
@@ -80,11 +80,11 @@ fn it_is_symmetric_and_positive_at_rest_and_turned_where_nodes_slide_and_where_t
     let springs: Vec<SpringSlope<'_>> = ends.iter().map(|parts| SpringSlope { parts, slope }).collect();
     for (angle, bend, springs) in [(0.0, 0.0, &[][..]), (1.2, 3.0, &[]), (0.0, 0.0, &springs), (1.2, 3.0, &springs)] {
         turn(&mut simulation, &made, angle, bend);
-        let mut two_level = TwoLevel::default();
+        let mut two_level = TwoLevel::of(Precision::F64);
         two_level.follow(&Operator { springs, ..made.operator(&simulation) });
         assert_eq!(two_level.turned, angle > 0.0);
         let (p, q) = (made.vector(0.37), made.vector(0.91));
-        let [mut of_p, mut of_q] = [vec![0.0; p.len()], vec![0.0; p.len()]];
+        let [mut of_p, mut of_q] = [made.axes.zeros(), made.axes.zeros()];
         two_level.apply(sums.cpu(), &p, &mut of_p);
         two_level.apply(sums.cpu(), &q, &mut of_q);
         let (one, other) = (sums.dot(&q, &of_p), sums.dot(&p, &of_q));
@@ -92,16 +92,16 @@ fn it_is_symmetric_and_positive_at_rest_and_turned_where_nodes_slide_and_where_t
         assert!((one - other).abs() < 1e-12 * size, "{angle}: {one} and {other} of {size}");
         for seed in [0.37, 0.91, 1.7, 0.01] {
             let r = made.vector(seed);
-            let mut z = vec![0.0; r.len()];
+            let mut z = made.axes.zeros();
             two_level.apply(sums.cpu(), &r, &mut z);
             assert!(sums.dot(&r, &z) > 0.0, "{angle}, {seed}");
-            assert!((0..r.len()).all(|axis| made.motion.free[axis] || z[axis] == 0.0));
+            assert!((0..r.len()).all(|axis| made.motion.free[axis] || z.get(axis) == 0.0));
         }
         // gone again, it is as if there had been none
-        let mut without = TwoLevel::default();
+        let mut without = TwoLevel::of(Precision::F64);
         without.follow(&made.operator(&simulation));
         two_level.follow(&made.operator(&simulation));
-        let mut again = vec![0.0; p.len()];
+        let mut again = made.axes.zeros();
         two_level.apply(sums.cpu(), &p, &mut of_p);
         without.apply(sums.cpu(), &p, &mut again);
         assert_eq!(of_p, again);
@@ -114,7 +114,7 @@ fn the_coarse_matrix_is_that_of_the_tangent() {
     let mut simulation = two_blocks();
     let made = Made::of(&mut simulation);
     let operator = made.operator(&simulation);
-    let mut fine = BlockJacobi::default();
+    let mut fine = BlockJacobi::of(Precision::F64);
     fine.begin(&operator);
     let pieces = find_pieces(&operator, &mut fine);
     assert_eq!(pieces.len(), 2);
@@ -130,17 +130,18 @@ fn what_moves_a_piece_as_a_whole_is_solved_exactly() {
     let mut simulation = two_blocks();
     let made = Made::of(&mut simulation);
     turn(&mut simulation, &made, 0.8, 1.0);
-    let mut two_level = TwoLevel::default();
+    let mut two_level = TwoLevel::of(Precision::F64);
     two_level.follow(&made.operator(&simulation));
     let (sums, r) = (Sums::on(simulation.world.resource::<Cpu>()), made.vector(0.77));
-    let mut z = vec![0.0; r.len()];
+    let mut z = made.axes.zeros();
     two_level.apply(sums.cpu(), &r, &mut z);
+    let inertia = made.operator(&simulation).inertia;
     let ranges: Vec<_> = made.axes.each().map(|(_, range)| range).collect();
     for (range, axis, is_free) in [(0, 0, true), (0, 2, false), (1, 0, true), (1, 2, true)] {
         let own = || ranges[range].clone().skip(axis).step_by(3);
-        let force: f64 = own().map(|i| r[i]).sum();
-        let momentum: f64 = own().map(|i| made.inertia[i / 3] * z[i]).sum();
-        let size: f64 = own().map(|i| r[i].abs()).sum();
+        let force: f64 = own().map(|i| r.get(i)).sum();
+        let momentum: f64 = own().map(|i| inertia.of(i / 3) * z.get(i)).sum();
+        let size: f64 = own().map(|i| r.get(i).abs()).sum();
         assert_eq!((force - momentum).abs() < 1e-12 * size, is_free, "{range}, {axis}: {force}, {momentum}");
     }
 }
