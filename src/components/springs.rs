@@ -1,6 +1,6 @@
 //! Springs of contact in implicit steps: their law, and what a Newton iteration needs of those that touch.
 
-use super::ContactSpring;
+use super::{ContactSpring, Reals};
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
@@ -120,14 +120,14 @@ impl SolvedPress {
 
 impl TouchingSpring {
     /// How the point moves against what it touches where axes move so far (m).
-    pub fn relative(&self, axes: &[f64]) -> DVec3 {
-        self.parts.iter().map(|&(first, weight)| DVec3::from_slice(&axes[first..first + 3]) * weight).sum()
+    pub fn relative(&self, axes: &Reals) -> DVec3 {
+        self.parts.iter().map(|&(first, weight)| axes.vector_at(first) * weight).sum()
     }
 
     /// Adds a force on the point, and against it on what it touches, to those of axes (N).
-    pub fn add(&self, force: DVec3, to: &mut [f64]) {
+    pub fn add(&self, force: DVec3, to: &mut Reals) {
         for &(first, weight) in &self.parts {
-            to[first..first + 3].iter_mut().zip(force.to_array()).for_each(|(to, force)| *to += weight * force);
+            to.set_vector_at(first, to.vector_at(first) + weight * force);
         }
     }
 }

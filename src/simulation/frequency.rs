@@ -14,6 +14,7 @@
 
 use super::tangent::Tangent;
 use crate::components::*;
+use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 
 /// δ: the chance that a start is so unlucky that the margin is too small.
@@ -282,17 +283,17 @@ pub(super) fn noise(roots: &[f64]) -> Vec<f64> {
     roots.iter().map(|&root| if root > 0.0 { normal() } else { 0.0 }).collect()
 }
 
-/// Eight sums side by side: one alone waits for each addition.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+/// Eight sums side by side, in f64: one alone waits for each addition.
+pub(super) fn dot<T: Scalar>(a: &[T], b: &[T]) -> f64 {
     let (a, left) = a.as_chunks::<8>();
     let (b, others) = b.as_chunks::<8>();
     let mut sums = [0.0; 8];
     for (a, b) in a.iter().zip(b) {
         for i in 0..8 {
-            sums[i] += a[i] * b[i];
+            sums[i] += a[i].to_f64() * b[i].to_f64();
         }
     }
-    let rest: f64 = left.iter().zip(others).map(|(a, b)| a * b).sum();
+    let rest: f64 = left.iter().zip(others).map(|(a, b)| a.to_f64() * b.to_f64()).sum();
     sums.iter().sum::<f64>() + rest
 }
 

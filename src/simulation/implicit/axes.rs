@@ -1,6 +1,7 @@
 //! All axes of all nodes as vectors, bodies one after the other: how they lie in columns.
 
 use super::super::tangent::heights_at_nodes;
+use super::vectors::{copy_to, none, resize};
 use crate::components::*;
 use bevy_ecs::prelude::*;
 use std::ops::Range;
@@ -9,23 +10,24 @@ use std::ops::Range;
 pub(super) struct Axes {
     pub bodies: Vec<Entity>,
     ranges: Vec<Range<usize>>,
-    /// About the height of the flattest element at the node of each axis (m).
+    /// About the height of the flattest element at each node (m).
     pub heights: Reals,
 }
 
-/// What the motion of axes depends on, at the beginning of a step.
-#[derive(Default)]
+/// What the motion of axes depends on, at the beginning of a step: as columns have it.
 pub(super) struct Motion {
-    /// Displacement (m), velocity (m/s), and acceleration (m/s²) where that is carried on.
-    pub u: Vec<f64>,
-    pub v: Vec<f64>,
-    pub a: Vec<f64>,
+    /// Displacement and that of the last step (m), what rounding has lost of them not counted, and acceleration (m/s²)
+    /// where that is carried on.
+    pub u: Reals,
+    pub step: Reals,
+    pub a: Reals,
+    /// What makes a velocity of a step (1/s); 0 at rest.
+    pub rate: f64,
     /// Mass (kg) of nodes, and damping coefficient (kg/s) where there is one.
-    pub mass: Vec<f64>,
-    pub damping: Vec<f64>,
-    /// Whether the axis moves freely, and whether it is held; inactive nodes are neither.
+    pub mass: Reals,
+    pub damping: Reals,
+    /// Whether the axis moves freely.
     pub free: Vec<bool>,
-    pub held: Vec<bool>,
 }
 
 impl Axes {
@@ -39,8 +41,7 @@ impl Axes {
             let length = world.get::<Displacement>(body).map_or(0, |u| u.len());
             ranges.push(end..end + length);
             end += length;
-            let of_nodes = heights_at_nodes(world, body).unwrap_or_default();
-            heights.extend(of_nodes.iter().flat_map(|&height| [height; 3]));
+            heights.extend(heights_at_nodes(world, body).unwrap_or_default());
         }
         Self { bodies, ranges, heights: Reals::from_f64(precision, heights.into_iter()) }
     }
@@ -48,6 +49,16 @@ impl Axes {
     /// How many there are.
     pub fn len(&self) -> usize {
         self.ranges.last().map_or(0, |range| range.end)
+    }
+
+    /// The numbers of the run.
+    pub fn precision(&self) -> Precision {
+        self.heights.precision()
+    }
+
+    /// A vector of zeros.
+    pub fn zeros(&self) -> Reals {
+        Reals::zeros(self.precision(), self.len())
     }
 
     /// Bytes of what is known of each.
@@ -60,19 +71,23 @@ impl Axes {
         self.bodies.iter().copied().zip(self.ranges.iter().cloned())
     }
 
+    /// A motion that is not known yet.
+    pub fn motion(&self) -> Motion {
+        let [u, step, a, mass, damping] = [(); 5].map(|()| none(self.precision()));
+        Motion { u, step, a, rate: 0.0, mass, damping, free: Vec::new() }
+    }
+
     /// Reads all that a step begins with; the velocity of a step of the clock's length.
     pub fn read(&self, world: &World, motion: &mut Motion) {
-        let rate = world.resource::<Clock>().rate();
-        let Motion { u, v, a, mass, damping, free, held } = motion;
-        for vector in [&mut *u, v] {
-            vector.resize(self.len(), 0.0);
-        }
-        mass.resize(self.len() / 3, 0.0);
+        let Motion { u, step, a, rate, mass, damping, free } = motion;
+        *rate = world.resource::<Clock>().rate();
+        resize(u, self.len());
+        resize(step, self.len());
+        resize(mass, self.len() / 3);
         free.resize(self.len(), false);
-        held.resize(self.len(), false);
         for (body, range) in self.each() {
             let entity = world.entity(body);
-            let (Some(place), Some(step), Some(masses), Some(axes)) = (
+            let (Some(place), Some(increment), Some(masses), Some(axes)) = (
                 entity.get::<Displacement>(),
                 entity.get::<DisplacementIncrement>(),
                 entity.get::<Mass>(),
@@ -80,67 +95,32 @@ impl Axes {
             ) else {
                 continue;
             };
-            place.read(&mut u[range.clone()]);
-            step.read(&mut v[range.clone()]);
-            if let Some(lost) = entity.get::<DisplacementCompensation>() {
-                let count = range.len();
-                (0..count).for_each(|i| u[range.start + i] -= lost.get(i));
-                (0..count).for_each(|i| v[range.start + i] -= lost.get(count + i));
-            }
-            v[range.clone()].iter_mut().for_each(|v| *v *= rate);
+            copy_to(u, range.start, place);
+            copy_to(step, range.start, increment);
+            copy_to(mass, range.start / 3, masses);
             if let Some(acceleration) = entity.get::<Acceleration>() {
-                a.resize(self.len(), 0.0);
-                acceleration.read(&mut a[range.clone()]);
+                resize(a, self.len());
+                copy_to(a, range.start, acceleration);
             }
-            let damped = entity.get::<DampingCoefficient>();
-            if damped.is_some() {
-                damping.resize(self.len() / 3, 0.0);
+            if let Some(damped) = entity.get::<DampingCoefficient>() {
+                resize(damping, self.len() / 3);
+                copy_to(damping, range.start / 3, damped);
             }
-            for (i, node) in (range.start / 3..range.end / 3).enumerate() {
-                mass[node] = masses.get(i);
-                if let Some(damped) = damped {
-                    damping[node] = damped.get(i);
-                }
-                for axis in 0..3 {
-                    let constrained = axes[i] >> axis & 1 == 1;
-                    free[3 * node + axis] = !constrained && mass[node] > 0.0;
-                    held[3 * node + axis] = constrained && mass[node] > 0.0;
-                }
+            for (i, axis) in range.enumerate() {
+                free[axis] = axes[i / 3] >> (i % 3) & 1 == 0 && masses.get(i / 3) > 0.0;
             }
         }
     }
 
-    /// Takes displacements (m) over, rounded.
-    pub fn displace(&self, world: &mut World, u: &[f64]) {
-        self.write::<Displacement>(world, u, |column| &mut column.0);
-    }
-
-    /// Takes the numbers of a column over, rounded.
-    pub fn write<C: Component<Mutability = bevy_ecs::component::Mutable>>(
-        &self,
-        world: &mut World,
-        values: &[f64],
-        numbers: fn(&mut C) -> &mut Reals,
-    ) {
+    /// Puts displacements and steps back as they were at the beginning of a step.
+    pub fn put_back(&self, world: &mut World, motion: &Motion) {
         for (body, range) in self.each() {
-            if let Some(mut column) = world.get_mut::<C>(body) {
-                numbers(&mut column).write(&values[range]);
+            if let Some(mut column) = world.get_mut::<Displacement>(body) {
+                (0..range.len()).for_each(|i| column.set(i, motion.u.get(range.start + i)));
             }
-        }
-    }
-
-    /// Takes the state at the end of a step over, with what rounding leaves out of it: displacements and steps (m).
-    pub fn arrive(&self, world: &mut World, u: &[f64], step: &[f64], acceleration: &[f64]) {
-        self.displace(world, u);
-        self.write::<DisplacementIncrement>(world, step, |column| &mut column.0);
-        self.write::<Acceleration>(world, acceleration, |column| &mut column.0);
-        for (body, range) in self.each() {
-            let Some(mut lost) = world.get_mut::<DisplacementCompensation>(body) else { continue };
-            let count = range.len();
-            // f32, as only its sums are compensated
-            let of = |exact: f64| f64::from(exact as f32) - exact;
-            (0..count).for_each(|i| lost.set(i, of(u[range.start + i])));
-            (0..count).for_each(|i| lost.set(count + i, of(step[range.start + i])));
+            if let Some(mut column) = world.get_mut::<DisplacementIncrement>(body) {
+                (0..range.len()).for_each(|i| column.set(i, motion.step.get(range.start + i)));
+            }
         }
     }
 }

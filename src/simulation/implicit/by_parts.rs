@@ -4,11 +4,13 @@
 use super::axes::{Axes, Motion};
 use super::differences::difference;
 use super::formula::Formula;
+use super::place::Place;
 use super::preconditioner::{Operator, Preconditioner, SpringSlope, TwoLevel};
 use super::springs::Springs;
 use super::trial::Trial;
 use crate::Simulation;
 use crate::backend::cpu::Cpu;
+use crate::components::{Displacement, Reals};
 use crate::error::Error;
 use crate::scene::schema::ImplicitScheme;
 use bevy_ecs::prelude::*;
@@ -24,10 +26,12 @@ impl Simulation {
     #[doc(hidden)]
     pub fn stiffness_by_differences(&mut self, w: &[f64], motions: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Error> {
         let axes = Axes::of(&mut self.world);
-        let (mut motion, formula) = (Motion::default(), Formula::of(ImplicitScheme::Euler));
+        let (mut motion, formula, h) = (axes.motion(), Formula::of(ImplicitScheme::Euler), 0.01);
         axes.read(&self.world, &mut motion);
-        let zeros = || vec![0.0; w.len()];
-        let (mut net, mut elsewhere, mut steps, mut springs) = (zeros(), zeros(), zeros(), Springs::default());
+        let mut correction = axes.zeros();
+        w.iter().enumerate().for_each(|(axis, w)| correction.set(axis, w - motion.predicted(axis, h)));
+        let place = Place { formula: &formula, h, motion: &motion, correction: &correction, beyond: None };
+        let (mut net, mut springs) = (axes.zeros(), Springs::default());
         let mut trial = Trial {
             world: &mut self.world,
             passes: &mut self.entries,
@@ -37,17 +41,21 @@ impl Simulation {
             count: 0,
             elsewhere: false,
         };
-        if !trial.forces(w, None, &mut net)? {
+        if !trial.forces(&place, &mut net)? {
             return Ok(Vec::new());
         }
         let product = |p: &Vec<f64>| {
-            let mut image = zeros();
-            let of_step = (&formula, 0.01, &motion);
-            difference(&mut trial, of_step, (w, &net), &mut elsewhere, &mut steps, p, &mut image)?;
-            Ok(image)
+            let (p, mut image) = (Reals::from_f64(axes.precision(), p.iter().copied()), axes.zeros());
+            difference(&mut trial, &place, &net, &p, &mut image)?;
+            Ok(numbers(&image))
         };
         motions.iter().map(product).collect()
     }
+}
+
+/// The numbers of a vector, widened.
+fn numbers(vector: &Reals) -> Vec<f64> {
+    (0..vector.len()).map(|axis| vector.get(axis)).collect()
 }
 
 /// The preconditioner of two levels of D + K, by itself.
@@ -55,18 +63,19 @@ impl Simulation {
 pub struct TwoLevelParts {
     axes: Axes,
     motion: Motion,
-    inertia: Vec<f64>,
+    formula: Formula,
+    h: f64,
     two_level: TwoLevel,
 }
 
 impl TwoLevelParts {
-    /// With so much inertia (N/m) for each kg.
-    pub fn of(simulation: &mut Simulation, per_mass: f64) -> Self {
+    /// Of a step of implicit Euler of so many seconds.
+    pub fn of(simulation: &mut Simulation, h: f64) -> Self {
         let axes = Axes::of(&mut simulation.world);
-        let mut motion = Motion::default();
+        let mut motion = axes.motion();
         axes.read(&simulation.world, &mut motion);
-        let inertia = motion.mass.iter().map(|mass| mass * per_mass).collect();
-        Self { axes, motion, inertia, two_level: TwoLevel::default() }
+        let two_level = TwoLevel::of(axes.precision());
+        Self { axes, motion, formula: Formula::of(ImplicitScheme::Euler), h, two_level }
     }
 
     /// The bodies, and which axes are theirs.
@@ -79,14 +88,18 @@ impl TwoLevelParts {
         &self.motion.free
     }
 
-    /// The inertia of each node (N/m).
-    pub fn inertia(&self) -> &[f64] {
-        &self.inertia
+    /// The inertia of a node (N/m).
+    pub fn inertia(&self, node: usize) -> f64 {
+        self.motion.inertia(&self.formula, self.h).of(node)
     }
 
     /// Puts all nodes where they are displaced to (m).
     pub fn displace(&self, simulation: &mut Simulation, u: &[f64]) {
-        self.axes.displace(&mut simulation.world, u);
+        for (body, range) in self.axes.each() {
+            if let Some(mut column) = simulation.world.get_mut::<Displacement>(body) {
+                u[range].iter().enumerate().for_each(|(axis, u)| column.set(axis, *u));
+            }
+        }
     }
 
     /// Follows the state, with springs: first axes of their nodes with signed weights, and slopes (N/m). Whether
@@ -97,7 +110,7 @@ impl TwoLevelParts {
             world: &simulation.world,
             bodies: &self.axes.bodies,
             free: &self.motion.free,
-            inertia: &self.inertia,
+            inertia: self.motion.inertia(&self.formula, self.h),
             stiffness: 1.0,
             springs: &slopes.collect::<Vec<_>>(),
         });
@@ -106,9 +119,10 @@ impl TwoLevelParts {
 
     /// z = B r (m) of a residual r (N).
     pub fn apply(&mut self, simulation: &Simulation, residual: &[f64]) -> Vec<f64> {
-        let mut z = vec![0.0; residual.len()];
-        self.two_level.apply(simulation.world.resource::<Cpu>(), residual, &mut z);
-        z
+        let residual = Reals::from_f64(self.axes.precision(), residual.iter().copied());
+        let mut z = self.axes.zeros();
+        self.two_level.apply(simulation.world.resource::<Cpu>(), &residual, &mut z);
+        numbers(&z)
     }
 
     /// Of each piece the rigid motions P of its aggregates, and Pᵀ K P: columns from the diagonal down.

@@ -2,31 +2,15 @@
 
 use super::preconditioner::Preconditioner;
 use super::sums::Sums;
+use super::vectors::{clear, combine, copy};
+use crate::components::Reals;
 use crate::error::Error;
 
-/// Vectors over all axes.
-#[derive(Default)]
+/// Vectors over all axes; between solves nobody needs what is in them.
 pub(super) struct Vectors {
-    residual: Vec<f64>,
-    preconditioned: Vec<f64>,
-    direction: Vec<f64>,
-    image: Vec<f64>,
-}
-
-impl Vectors {
-    /// Of so many axes.
-    pub fn resize(&mut self, length: usize) {
-        let Self { residual, preconditioned, direction, image } = self;
-        for vector in [residual, preconditioned, direction, image] {
-            vector.resize(length, 0.0);
-        }
-    }
-
-    /// Their bytes.
-    pub fn bytes(&self) -> usize {
-        let Self { residual, preconditioned, direction, image } = self;
-        [residual, preconditioned, direction, image].into_iter().map(|vector| size_of_val(&vector[..])).sum()
-    }
+    pub direction: Reals,
+    /// A times that, and then the preconditioned residual.
+    pub image: Reals,
 }
 
 /// Why a solve ended.
@@ -47,6 +31,8 @@ pub(super) enum Ended {
 pub(super) struct Solved {
     pub iterations: u64,
     pub ended: Ended,
+    /// x·b.
+    pub along: f64,
 }
 
 /// When a solve ends.
@@ -58,55 +44,53 @@ pub(super) struct Stop {
     pub most: u64,
 }
 
-/// x ≈ A⁻¹ b from x = 0. Along a direction that A does not resist, the last x is kept; where that is the first, x is
-/// the preconditioned b, which leads downhill.
+/// x ≈ A⁻¹ b from x = 0; b becomes what is left, b − A x. Along a direction that A does not resist, the last x is kept;
+/// where that is the first, x is the preconditioned b, which leads downhill.
 pub(super) fn solve(
     sums: &Sums,
-    b: &[f64],
-    x: &mut [f64],
-    vectors: &mut Vectors,
+    b: &mut Reals,
+    x: &mut Reals,
+    Vectors { direction, image }: &mut Vectors,
     preconditioner: &mut dyn Preconditioner,
     stop: Stop,
-    mut times: impl FnMut(&[f64], &mut [f64]) -> Result<(), Error>,
+    mut times: impl FnMut(&Reals, &mut Reals) -> Result<(), Error>,
 ) -> Result<Solved, Error> {
-    vectors.resize(b.len());
-    let Vectors { residual, preconditioned, direction, image } = vectors;
-    x.fill(0.0);
-    residual.copy_from_slice(b);
-    let enough = stop.tolerance * sums.norm(b);
-    preconditioner.apply(sums.cpu(), residual, preconditioned);
-    direction.copy_from_slice(preconditioned);
-    let mut product = sums.dot(residual, preconditioned);
-    let ended = |iterations, ended| Ok(Solved { iterations, ended });
-    for iteration in 0..stop.most {
+    let residual = b;
+    clear(x);
+    let enough = stop.tolerance * sums.norm(residual);
+    preconditioner.apply(sums.cpu(), residual, direction);
+    // of each direction d·b is r·z
+    let (mut product, mut along) = (sums.dot(residual, direction), 0.0);
+    let ended = |iterations, ended, along| Ok(Solved { iterations, ended, along });
+    for iteration in 1..=stop.most {
         times(direction, image)?;
         let curvature = sums.dot(direction, image);
         if !curvature.is_finite() {
-            return ended(iteration + 1, Ended::NotFinite);
+            return ended(iteration, Ended::NotFinite, along);
         }
         if curvature <= 0.0 {
-            if iteration == 0 {
-                x.copy_from_slice(preconditioned);
+            if iteration == 1 {
+                copy(x, direction);
+                along = product;
             }
-            return ended(iteration + 1, Ended::NegativeCurvature);
+            return ended(iteration, Ended::NegativeCurvature, along);
         }
         let length = product / curvature;
-        x.iter_mut().zip(&*direction).for_each(|(x, direction)| *x += length * direction);
-        residual.iter_mut().zip(&*image).for_each(|(residual, image)| *residual -= length * image);
+        along += length * product;
+        combine(x, direction, |x, direction| x + length * direction);
+        combine(residual, image, |residual, image| residual - length * image);
         let left = sums.norm(residual);
         if !left.is_finite() {
-            return ended(iteration + 1, Ended::NotFinite);
+            return ended(iteration, Ended::NotFinite, along);
         }
         if left <= enough {
-            return ended(iteration + 1, Ended::Converged);
+            return ended(iteration, Ended::Converged, along);
         }
-        preconditioner.apply(sums.cpu(), residual, preconditioned);
-        let next = sums.dot(residual, preconditioned);
+        preconditioner.apply(sums.cpu(), residual, image);
+        let next = sums.dot(residual, image);
         let turn = next / product;
         product = next;
-        for (direction, z) in direction.iter_mut().zip(preconditioned.iter()) {
-            *direction = z + turn * *direction;
-        }
+        combine(direction, image, |direction, z| z + turn * direction);
     }
-    ended(stop.most, Ended::Exhausted)
+    ended(stop.most, Ended::Exhausted, along)
 }

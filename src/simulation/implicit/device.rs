@@ -8,11 +8,14 @@ mod kernels;
 use super::axes::Axes;
 use super::conjugate_gradients::{Ended, Solved, Stop};
 use super::formula::Formula;
+use super::place::Place;
 use super::preconditioner::Preconditioner;
 use super::sums::Sums;
 use super::trial::{STRAIN, Trial};
+use super::vectors::{clear, update};
 use crate::backend::device::Device;
 use crate::backend::kernel::{BufferId, Kernel, KernelId, Uniform};
+use crate::components::{Displacement, Reals};
 use crate::error::Error;
 use bevy_ecs::prelude::*;
 use coarse::{Layout, turns};
@@ -39,17 +42,12 @@ fn endings() -> String {
 
 /// (D + c K) x = b at w; all vectors are of all axes.
 pub(super) struct LinearSystem<'a> {
+    /// w.
+    pub place: Place<'a>,
     /// b (N).
-    pub right: &'a [f64],
-    /// w (m), and the forces there (N).
-    pub w: &'a [f64],
-    pub net: &'a [f64],
-    /// The velocity there as a displacement of a step (m), where loads look at it.
-    pub steps: Option<&'a [f64]>,
-    /// D of nodes (N/m).
-    pub inertia: &'a [f64],
-    pub free: &'a [bool],
-    pub formula: &'a Formula,
+    pub right: &'a Reals,
+    /// The forces at w (N).
+    pub net: &'a Reals,
     pub preconditioner: &'a dyn Preconditioner,
 }
 
@@ -97,11 +95,13 @@ impl OnDevice {
     }
 
     /// Fills in a system, divided by the norm of its right-hand side.
-    fn fill(&mut self, world: &mut World, system: &LinearSystem<'_>, size: f64, stop: Stop) -> Result<(), Error> {
+    fn fill(&mut self, trial: &mut Trial<'_>, system: &LinearSystem<'_>, size: f64, stop: Stop) -> Result<(), Error> {
         let mut numbers = [0.0_f32; SOLVE_WORDS];
         numbers[LEFT + 1] = (stop.tolerance * stop.tolerance) as f32;
-        let of_axis = |(axis, &free): (usize, &bool)| if free { system.inertia[axis / 3] } else { -1.0 };
-        let inertia = system.free.iter().enumerate().map(of_axis);
+        let Place { formula, h, motion, .. } = system.place;
+        let (of_nodes, looks_at_steps, world) = (motion.inertia(formula, h), trial.looks_at_steps(), &mut *trial.world);
+        let of_axis = |(axis, &free): (usize, &bool)| if free { of_nodes.of(axis / 3) } else { -1.0 };
+        let inertia = motion.free.iter().enumerate().map(of_axis);
         let blocks = (0..system.right.len() / 3).flat_map(|node| {
             let block = system.preconditioner.block(node);
             let [x, y, z] = [block.x_axis, block.y_axis, block.z_axis];
@@ -109,16 +109,19 @@ impl OnDevice {
         });
         let rounded = |numbers: &mut dyn Iterator<Item = f64>| numbers.map(|number| number as f32).collect();
         let vectors = self.vectors;
+        // the world is there
+        let columns = trial.axes.bodies.iter().filter_map(|&body| world.get::<Displacement>(body));
+        let place = columns.flat_map(|u| numbers_of(u).map(|number| number as f32)).collect();
         let filled: [(BufferId, Vec<f32>); 7] = [
             (vectors.solve, numbers.to_vec()),
             (vectors.solution, vec![0.0; system.right.len()]),
-            (vectors.residual, rounded(&mut system.right.iter().map(|force| force / size))),
-            (vectors.place, rounded(&mut system.w.iter().copied())),
-            (vectors.net_force, rounded(&mut system.net.iter().copied())),
+            (vectors.residual, rounded(&mut numbers_of(system.right).map(|force| force / size))),
+            (vectors.place, place),
+            (vectors.net_force, rounded(&mut numbers_of(system.net))),
             (vectors.inertia, rounded(&mut { inertia })),
             (vectors.node_blocks, rounded(&mut { blocks })),
         ];
-        let steps = system.steps.map(|steps| (vectors.place_step, rounded(&mut steps.iter().copied())));
+        let steps = looks_at_steps.then(|| (vectors.place_step, rounded(&mut system.place.steps())));
         for (buffer, numbers) in filled.into_iter().chain(steps) {
             upload(world, buffer, &numbers)?;
         }
@@ -159,7 +162,8 @@ impl OnDevice {
             let ended = ENDINGS.get(ended as usize).and_then(|(_, ended)| *ended);
             if ended.is_some() || taken >= most {
                 trial.count += taken;
-                return Ok(Solved { iterations: iterations.into(), ended: ended.unwrap_or(Ended::Exhausted) });
+                let ended = ended.unwrap_or(Ended::Exhausted);
+                return Ok(Solved { iterations: iterations.into(), ended, along: 0.0 });
             }
         }
     }
@@ -193,6 +197,11 @@ fn read<T: bytemuck::AnyBitPattern>(world: &mut World, buffer: BufferId) -> Resu
     Ok(world.resource_mut::<Device>().gpu().download_rows(buffer)?)
 }
 
+/// The numbers of a vector, widened.
+fn numbers_of(vector: &Reals) -> impl Iterator<Item = f64> + '_ {
+    (0..vector.len()).map(|axis| vector.get(axis))
+}
+
 /// x ≈ (D + c K)⁻¹ b, as [`solve`](super::conjugate_gradients::solve) finds it on the host; in f32, with the numbers
 /// divided by the norm of b.
 pub(super) fn solve(
@@ -200,12 +209,12 @@ pub(super) fn solve(
     trial: &mut Trial<'_>,
     system: &LinearSystem<'_>,
     sums: &Sums,
-    x: &mut [f64],
+    x: &mut Reals,
     stop: Stop,
 ) -> Result<Solved, Error> {
-    x.fill(0.0);
+    clear(x);
     let size = sums.norm(system.right);
-    let solved = |ended| Ok(Solved { iterations: 1, ended });
+    let solved = |ended| Ok(Solved { iterations: 1, ended, along: 0.0 });
     match size {
         0.0 => return solved(Ended::NegativeCurvature),
         _ if !size.is_finite() => return solved(Ended::NotFinite),
@@ -217,16 +226,16 @@ pub(super) fn solve(
         // pieces become more where elements go
         let more = if on_device.is_some() { 2 } else { 1 };
         let room = Room { aggregates: more * room.aggregates, entries: more * room.entries };
-        *on_device = Some(OnDevice::new(trial, system.formula, room)?);
+        *on_device = Some(OnDevice::new(trial, system.place.formula, room)?);
     }
     let Some(on_device) = on_device else { return solved(Ended::NotFinite) };
-    on_device.fill(trial.world, system, size, stop)?;
+    on_device.fill(trial, system, size, stop)?;
     let solved = on_device.iterate(trial, stop.most)?;
     trial.elsewhere = true;
     let found: Vec<f32> = read(trial.world, on_device.vectors.solution)?;
-    x.iter_mut().zip(found).for_each(|(x, found)| *x = size * f64::from(found));
+    update(x, |axis, _| size * found.get(axis).copied().map_or(0.0, f64::from));
     system.preconditioner.settle(system.right, x);
-    Ok(solved)
+    Ok(Solved { along: sums.dot(x, system.right), ..solved })
 }
 
 fn needed(preconditioner: &dyn Preconditioner) -> Room {

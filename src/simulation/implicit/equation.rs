@@ -2,74 +2,142 @@
 
 use super::axes::Motion;
 use super::formula::Formula;
+use super::place::Place;
+use super::vectors::with_numbers;
+use crate::components::Reals;
+use crate::math::Scalar;
+
+/// D of nodes (N/m): what a displacement of 1 m changes of the equation of an axis beside forces.
+#[derive(Clone, Copy)]
+pub(in crate::simulation) struct Inertia<'a> {
+    mass: &'a Reals,
+    damping: &'a Reals,
+    per_mass: f64,
+    per_damping: f64,
+}
+
+impl Inertia<'_> {
+    /// That of a node.
+    pub fn of(&self, node: usize) -> f64 {
+        let damping = if self.damping.is_empty() { 0.0 } else { self.per_damping * self.damping.get(node) };
+        self.per_mass * self.mass.get(node) + damping
+    }
+
+    /// Adds D p to a product (N) on free axes, and makes it 0 on others.
+    pub fn add_product(&self, p: &Reals, free: &[bool], image: &mut Reals) {
+        with_numbers!(image, T => {
+            let nodes = image.slice_mut::<T>().as_chunks_mut::<3>().0.iter_mut().zip(p.slice::<T>().as_chunks::<3>().0);
+            for (node, ((image, p), free)) in nodes.zip(free.as_chunks::<3>().0).enumerate() {
+                let inertia = self.of(node);
+                for i in 0..3 {
+                    let sum = image[i].to_f64() + inertia * p[i].to_f64();
+                    image[i] = if free[i] { T::from_f64(sum) } else { T::default() };
+                }
+            }
+        });
+    }
+
+    /// Those of all nodes.
+    pub fn all(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.mass.len()).map(|node| self.of(node))
+    }
+}
 
 impl Motion {
     /// Bytes of all vectors.
     pub fn bytes(&self) -> usize {
-        let Self { u, v, a, mass, damping, free, held } = self;
-        let numbers: usize = [u, v, a, mass, damping].into_iter().map(|vector| size_of_val(&vector[..])).sum();
-        numbers + size_of_val(&free[..]) + size_of_val(&held[..])
+        let Self { u, step, a, rate: _, mass, damping, free } = self;
+        let numbers: usize = [u, step, a, mass, damping].into_iter().map(|vector| vector.bytes().len()).sum();
+        numbers + size_of_val(&free[..])
+    }
+
+    /// Whether the axis is held; one that is not free else is of an inactive node.
+    pub fn is_held(&self, axis: usize) -> bool {
+        !self.free[axis] && self.mass.get(axis / 3) > 0.0
+    }
+
+    /// The velocity before (m/s), to the digits of the run.
+    pub fn velocity(&self, axis: usize) -> f64 {
+        self.rate * self.step.get(axis)
     }
 
     /// The acceleration before (m/s²), 0 where none is carried on.
     pub fn acceleration(&self, axis: usize) -> f64 {
-        self.a.get(axis).copied().unwrap_or(0.0)
+        if self.a.is_empty() { 0.0 } else { self.a.get(axis) }
     }
 
     /// The damping coefficient of an axis (kg/s).
     pub fn damping(&self, axis: usize) -> f64 {
-        self.damping.get(axis / 3).copied().unwrap_or(0.0)
+        if self.damping.is_empty() { 0.0 } else { self.damping.get(axis / 3) }
     }
 
-    /// y = u + h v (m).
+    /// y = u + h v (m), to the digits of the run.
     pub fn predicted(&self, axis: usize, h: f64) -> f64 {
-        if self.free[axis] { self.u[axis] + h * self.v[axis] } else { self.u[axis] }
+        let u = self.u.get(axis);
+        if self.free[axis] { u + h * self.velocity(axis) } else { u }
     }
 
-    /// The velocity (m/s) and acceleration (m/s²) at the end of a step of h, of an axis that is at w then.
-    pub fn arrival(&self, formula: &Formula, axis: usize, h: f64, w: f64) -> (f64, f64) {
+    /// The velocity (m/s) and acceleration (m/s²) at the end of a step of h, of an axis that is so far from y then (m),
+    /// and had a velocity.
+    pub fn arrival(&self, formula: &Formula, axis: usize, h: f64, (correction, velocity): (f64, f64)) -> (f64, f64) {
+        if formula.is_of_rest() {
+            return (0.0, 0.0);
+        }
         if !self.free[axis] {
-            let velocity = if self.held[axis] { (w - self.u[axis]) / h } else { 0.0 };
-            return (velocity, 0.0);
+            return (if self.is_held(axis) { correction / h } else { 0.0 }, 0.0);
         }
         let before = self.acceleration(axis);
-        let acceleration = formula.acceleration(h, w - self.predicted(axis, h), before);
-        (formula.velocity(h, self.v[axis], [before, acceleration]), acceleration)
+        let acceleration = formula.acceleration(h, correction, before);
+        (formula.velocity(h, velocity, [before, acceleration]), acceleration)
     }
 
-    /// D of a node (N/m).
-    pub fn inertia(&self, formula: &Formula, h: f64, node: usize) -> f64 {
-        formula.inertia(h, self.mass[node], self.damping(3 * node))
+    /// D in a step of h.
+    pub fn inertia(&self, formula: &Formula, h: f64) -> Inertia<'_> {
+        let Self { mass, damping, .. } = self;
+        let (per_mass, per_damping) = (formula.inertia(h, 1.0, 0.0), formula.inertia(h, 0.0, 1.0));
+        Inertia { mass, damping, per_mass, per_damping }
     }
 
-    /// What is constant of the equation of an axis (N) beside D (w − y) and the forces at the end; `net` is F − R
-    /// before.
-    pub fn constant(&self, formula: &Formula, h: f64, axis: usize, net: f64) -> f64 {
-        if !self.free[axis] {
+    /// What is constant of the equation of an axis (N) beside D (w − y) and the forces at the end; `before` is F − R
+    /// before, where that counts.
+    fn constant(&self, formula: &Formula, h: f64, axis: usize, before: &Reals) -> f64 {
+        if !self.free[axis] || self.a.is_empty() && self.damping.is_empty() && before.is_empty() {
             return 0.0;
         }
-        let (mass, damping) = (self.mass[axis / 3], self.damping(axis));
-        let (velocity, acceleration) = self.arrival(formula, axis, h, self.predicted(axis, h));
+        let (mass, damping, velocity) = (self.mass.get(axis / 3), self.damping(axis), self.velocity(axis));
+        let (after, acceleration) = self.arrival(formula, axis, h, (0.0, velocity));
         let accelerations = [self.acceleration(axis), acceleration];
-        let inertial = formula.inertial_force(mass, damping, [self.v[axis], velocity], accelerations);
-        inertial + formula.alpha_f * net
+        let inertial = formula.inertial_force(mass, damping, [velocity, after], accelerations);
+        if before.is_empty() { inertial } else { inertial + formula.alpha_f * before.get(axis) }
+    }
+}
+
+impl Place<'_> {
+    /// What inertia, damping and the forces before make of the equations of free axes (N): its norm.
+    pub fn inertial_forces(&self, before: &Reals) -> f64 {
+        let Self { formula, h, motion, .. } = self;
+        let inertia = motion.inertia(formula, *h);
+        let force =
+            |axis: usize| motion.constant(formula, *h, axis, before) + inertia.of(axis / 3) * self.correction(axis);
+        let free = (0..motion.free.len()).filter(|&axis| motion.free[axis]);
+        free.map(|axis| force(axis).powi(2)).sum::<f64>().sqrt()
     }
 
-    /// The residual of all free axes at w (N), from the forces there.
-    pub fn fill_residual(
-        &self,
-        (stiffness, h): (f64, f64),
-        (w, net): (&[f64], &[f64]),
-        (constant, inertia): (&[f64], &[f64]),
-        g: &mut [f64],
-    ) {
-        for axis in 0..w.len() {
-            g[axis] = match self.free[axis] {
-                true => {
-                    constant[axis] + inertia[axis / 3] * (w[axis] - self.predicted(axis, h)) + stiffness * net[axis]
-                }
-                false => 0.0,
-            };
-        }
+    /// The residual of all free axes there (N), from the forces there.
+    pub fn fill_residual(&self, net: &Reals, before: &Reals, residual: &mut Reals) {
+        let Self { formula, h, motion, correction, .. } = self;
+        let (stiffness, inertia) = (formula.stiffness(), motion.inertia(formula, *h));
+        with_numbers!(residual, T => {
+            let (net, correction) = (net.slice::<T>(), correction.slice::<T>());
+            for (axis, residual) in residual.slice_mut::<T>().iter_mut().enumerate() {
+                let of_inertia = || inertia.of(axis / 3) * correction[axis].to_f64();
+                *residual = match motion.free[axis] {
+                    true => T::from_f64(
+                        motion.constant(formula, *h, axis, before) + of_inertia() + stiffness * net[axis].to_f64(),
+                    ),
+                    false => T::default(),
+                };
+            }
+        });
     }
 }

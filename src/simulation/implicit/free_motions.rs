@@ -119,19 +119,19 @@ impl FreeMotion {
     }
 
     /// How it moves all axes.
-    pub fn axes(&self, count: usize) -> Vec<f64> {
-        let mut axes = vec![0.0; count];
+    pub fn axes(&self, count: usize) -> Reals {
+        let mut axes = Reals::zeros(Precision::F64, count);
         for (node, arm) in &self.nodes {
-            axes[3 * node..3 * node + 3].copy_from_slice(&self.along(*arm).to_array());
+            axes.set_vector(*node, self.along(*arm));
         }
         axes
     }
 
     /// The work of forces (N) on all axes along it, and the sum of its parts' sizes.
-    pub fn work(&self, forces: &[f64]) -> (f64, f64) {
+    pub fn work(&self, forces: &Reals) -> (f64, f64) {
         let of_node = |(node, arm): &(usize, DVec3)| {
             let along = self.along(*arm);
-            (0..3).map(|i| along[i] * forces[3 * node + i]).collect::<Vec<f64>>()
+            (0..3).map(|i| along[i] * forces.get(3 * node + i)).collect::<Vec<f64>>()
         };
         let parts: Vec<f64> = self.nodes.iter().flat_map(of_node).collect();
         (parts.iter().sum(), parts.iter().map(|part| part.abs()).sum())

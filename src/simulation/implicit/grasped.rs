@@ -1,9 +1,9 @@
 //! Axes that closed tools hold: held as if they were told where to go.
 
 use super::axes::{Axes, Motion};
-use super::formula::Formula;
-use super::newton::Workspace;
-use crate::components::{ExternalForce, Grasps, InternalForce};
+use super::place::Place;
+use super::vectors::resize;
+use crate::components::{DisplacementCompensation, ExternalForce, Grasps, InternalForce, Reals};
 use crate::systems::{HeldNode, held_in_step, note_held};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -13,7 +13,7 @@ pub(super) struct Grasped(Vec<(HeldNode, usize, [bool; 3])>);
 
 impl Grasped {
     /// Holds the free axes of nodes that closed tools hold, and says how far they have to go (m).
-    pub fn hold(world: &mut World, axes: &Axes, motion: &mut Motion, to_go: &mut Vec<f64>) -> Self {
+    pub fn hold(world: &mut World, axes: &Axes, motion: &mut Motion, to_go: &mut Reals) -> Self {
         let mut all = Vec::new();
         // a step asks for no memory for what is not there
         if !axes.bodies.iter().any(|&body| world.get::<Grasps>(body).is_some()) {
@@ -27,9 +27,11 @@ impl Grasped {
                 let axis = first + i;
                 own[i] = motion.free[axis];
                 if own[i] {
-                    to_go.resize(axes.len(), 0.0);
-                    (motion.free[axis], motion.held[axis]) = (false, true);
-                    to_go[axis] = to - motion.u[axis];
+                    resize(to_go, axes.len());
+                    motion.free[axis] = false;
+                    let lost = world.get::<DisplacementCompensation>(node.body);
+                    let lost = lost.map_or(0.0, |lost| lost.get(3 * node.row + i));
+                    to_go.set(axis, to - (motion.u.get(axis) - lost));
                 }
             }
             all.push((node, first, own));
@@ -52,15 +54,16 @@ impl Grasped {
 
     /// Notes the forces of tools at the end of a step of h (s): what balances forces, damping and inertia there; at
     /// rest forces alone.
-    pub fn note(&self, world: &mut World, (formula, h, motion): (&Formula, f64, &Motion), space: &Workspace) {
+    pub fn note(&self, world: &mut World, place: &Place<'_>, net: &Reals) {
+        let Place { formula, h, motion, .. } = place;
         for (node, first, own) in &self.0 {
             let of_axis = |i: usize| {
                 let axis = first + i;
-                let velocity = motion.arrival(formula, axis, h, space.w[axis]).0;
-                let (mass, damping) = (motion.mass[axis / 3], motion.damping(axis));
-                let inertial = mass * (velocity - motion.v[axis]) / h + damping * velocity;
+                let (before, velocity) = (motion.velocity(axis), place.arrival(axis).0);
+                let (mass, damping) = (motion.mass.get(axis / 3), motion.damping(axis));
+                let inertial = mass * (velocity - before) / h + damping * velocity;
                 let inertial = if formula.is_of_rest() { 0.0 } else { inertial };
-                if own[i] { space.net[axis] + inertial } else { 0.0 }
+                if own[i] { net.get(axis) + inertial } else { 0.0 }
             };
             note_held(world, node, DVec3::from_array([0, 1, 2].map(of_axis)));
         }

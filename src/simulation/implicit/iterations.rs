@@ -7,6 +7,7 @@ use super::axes::{Axes, Motion};
 use super::device::{OnDevice, in_words};
 use super::kept::Kept;
 use super::newton::{Found, Newton, Settings, Workspace};
+use super::place::Place;
 use super::preconditioner::{Operator, Preconditioner, of_name};
 use super::report::{Durations, ImplicitSteps};
 use super::step_control::{StepControl, error_and_reach};
@@ -42,13 +43,11 @@ pub(super) struct Iterations {
 impl Iterations {
     /// None taken yet.
     pub fn new(settings: Settings, preconditioner: schema::Preconditioner, axes: &Axes, world: &World) -> Self {
-        let mut space = Workspace::default();
-        space.resize(axes.len());
         Self {
             settings,
-            preconditioner: of_name(preconditioner),
-            motion: Motion::default(),
-            space,
+            preconditioner: of_name(preconditioner, axes.precision()),
+            motion: axes.motion(),
+            space: Workspace::of(axes),
             kept: Kept::default(),
             sums: Sums::on(world.resource::<Cpu>()),
             report: ImplicitSteps::default(),
@@ -82,20 +81,21 @@ impl Iterations {
         self.passes += passes;
     }
 
-    /// What the end of a step of h comes to, in the workspace; and whether it is taken, by what chooses steps.
-    pub fn takes(&mut self, control: Option<&mut StepControl>, h: f64, found: &Found) -> bool {
-        let Self { settings: Settings { formula, newton, budget, .. }, motion, space, .. } = self;
-        let Workspace { w, p: step, g: acceleration, .. } = space;
-        for axis in 0..w.len() {
-            let (velocity, of_axis) = motion.arrival(formula, axis, h, w[axis]);
-            (step[axis], acceleration[axis]) = (h * velocity, of_axis);
-        }
+    /// Where axes are at the end of a step of h (s).
+    pub fn place(&self, h: f64) -> Place<'_> {
+        let Self { settings, motion, space, .. } = self;
+        Place { formula: &settings.formula, h, motion, correction: &space.correction, beyond: None }
+    }
+
+    /// Whether the end of a step of h is taken, by what chooses steps.
+    pub fn takes(&self, control: Option<&mut StepControl>, h: f64, found: &Found) -> bool {
+        let Settings { formula, newton, budget, .. } = &self.settings;
         let Some(control) = control else { return true };
         let is_stuck = *newton > 1 && budget.is_none() && !found.solved;
         if is_stuck && control.cut_back(h) {
             return false;
         }
-        let [error, reach] = error_and_reach((formula, h, motion), w, acceleration);
+        let [error, reach] = error_and_reach(&self.place(h));
         control.takes(h, error, reach, formula.order())
     }
 
@@ -139,14 +139,11 @@ impl Iterations {
         axes.read(world, motion);
         kept.keep(world);
         let formula = &settings.formula;
-        for (node, inertia) in space.inertia.iter_mut().enumerate() {
-            *inertia = motion.inertia(formula, h, node);
-        }
         preconditioner.follow(&Operator {
             world,
             bodies: &axes.bodies,
             free: &motion.free,
-            inertia: &space.inertia,
+            inertia: motion.inertia(formula, h),
             stiffness: formula.stiffness(),
             springs: &[],
         });

@@ -3,10 +3,17 @@
 use crate::components::*;
 use bevy_ecs::prelude::*;
 
-/// Whether the search for a step writes over a column; what rounding leaves out is written when one is taken.
+/// Whether the search for a step writes over a column; what rounding leaves out is written when one is taken, and what
+/// moves is in the [`Motion`](super::axes::Motion) that it begins with.
 fn is_tried(column: &ColumnAccess) -> bool {
-    let subjects = [Subject::Motion, Subject::Force, Subject::Memory, Subject::Grip];
-    column.role == Role::State && subjects.contains(&column.subject) && column.increments != Increments::SecondHalf
+    let subjects = [Subject::Force, Subject::Memory, Subject::Grip];
+    column.role == Role::State && subjects.contains(&column.subject)
+}
+
+/// Whether the search for rest does, whose motions begin where loads have grown to: what touches carries on there.
+fn is_tried_at_rest(column: &ColumnAccess) -> bool {
+    let moves = column.role == Role::State && column.subject == Subject::Motion;
+    is_tried(column) || moves && column.increments != Increments::SecondHalf || column.subject == Subject::Touch
 }
 
 /// These columns as they were at the beginning of the step.
@@ -25,9 +32,7 @@ impl Kept {
     /// Keeps them, where they were kept before.
     pub fn keep(&mut self, world: &mut World) {
         if self.columns.is_empty() {
-            let of_rest = self.of_rest;
-            // loads grow in steps there: what touches carries on
-            self.columns = find(world, |column| is_tried(column) || of_rest && column.subject == Subject::Touch);
+            self.columns = find(world, if self.of_rest { is_tried_at_rest } else { is_tried });
         }
         for (column, entity, bytes) in &mut self.columns {
             bytes.clear();

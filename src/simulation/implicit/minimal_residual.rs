@@ -1,17 +1,26 @@
 //! The minimal residual method for the linear system of a path of equilibria, whose operator need not be positive
 //! (Paige & Saunders 1975), with a preconditioner that is (Elman, Silvester & Wathen 2014, section 4.1).
 
+use super::axes::Axes;
 use super::conjugate_gradients::Stop;
 use super::preconditioner::Preconditioner;
 use super::sums::Sums;
+use super::vectors::{clear, copy, update};
+use crate::components::Reals;
 use crate::error::Error;
 
 /// A pivot below this share of the largest is rounding of products.
 const ROUNDING: f64 = 1e-7;
 
 /// Vectors over all axes.
-#[derive(Default)]
-pub(super) struct Vectors([Vec<f64>; 7]);
+pub(super) struct Vectors([Reals; 7]);
+
+impl Vectors {
+    /// Of all axes.
+    pub fn of(axes: &Axes) -> Self {
+        Self([(); 7].map(|()| axes.zeros()))
+    }
+}
 
 /// How a solve went.
 #[derive(Clone, Copy, Debug)]
@@ -26,20 +35,17 @@ pub(super) struct Solved {
 /// The signs of the pivots of the Lanczos matrix are those of eigenvalues of A in the space that the solve has seen.
 pub(super) fn solve(
     sums: &Sums,
-    b: &[f64],
-    x: &mut [f64],
+    b: &Reals,
+    x: &mut Reals,
     Vectors(vectors): &mut Vectors,
     preconditioner: &mut dyn Preconditioner,
     stop: Stop,
-    mut times: impl FnMut(&[f64], &mut [f64]) -> Result<(), Error>,
+    mut times: impl FnMut(&Reals, &mut Reals) -> Result<(), Error>,
 ) -> Result<Solved, Error> {
-    vectors.iter_mut().for_each(|vector| {
-        vector.clear();
-        vector.resize(b.len(), 0.0);
-    });
+    vectors.iter_mut().for_each(clear);
     let [v_before, v, z, image, w_before, w, z_next] = vectors;
-    x.fill(0.0);
-    v.copy_from_slice(b);
+    clear(x);
+    copy(v, b);
     preconditioner.apply(sums.cpu(), v, z);
     let mut gamma = sums.dot(z, v).max(0.0).sqrt();
     let (first, mut eta, mut gamma_before) = (gamma, gamma, 1.0);
@@ -49,13 +55,14 @@ pub(super) fn solve(
         return Ok(Solved { iterations: 0, gives_way });
     }
     for iteration in 1..=stop.most {
-        z.iter_mut().for_each(|z| *z /= gamma);
+        update(z, |_, z| z / gamma);
         times(z, image)?;
         let delta = sums.dot(image, z);
         // v becomes the next vector of Lanczos, and the one before it what it was
         for i in 0..x.len() {
-            let next = image[i] - delta / gamma * v[i] - gamma / gamma_before * v_before[i];
-            (v_before[i], v[i]) = (v[i], next);
+            let next = image.get(i) - delta / gamma * v.get(i) - gamma / gamma_before * v_before.get(i);
+            v_before.set(i, v.get(i));
+            v.set(i, next);
         }
         preconditioner.apply(sums.cpu(), v, z_next);
         let gamma_next = sums.dot(z_next, v).max(0.0).sqrt();
@@ -70,9 +77,10 @@ pub(super) fn solve(
         cosines = [c, diagonal / length];
         sines = [s, gamma_next / length];
         for i in 0..x.len() {
-            let next = (z[i] - two * w_before[i] - one * w[i]) / length;
-            (w_before[i], w[i]) = (w[i], next);
-            x[i] += cosines[1] * eta * next;
+            let next = (z.get(i) - two * w_before.get(i) - one * w.get(i)) / length;
+            w_before.set(i, w.get(i));
+            w.set(i, next);
+            x.set(i, x.get(i) + cosines[1] * eta * next);
         }
         eta *= -sines[1];
         // what is no number does not go on

@@ -14,6 +14,7 @@ mod iterations;
 mod kept;
 mod minimal_residual;
 mod newton;
+mod place;
 mod preconditioner;
 mod report;
 mod springs;
@@ -23,6 +24,7 @@ mod step_control;
 mod sums;
 mod trial;
 mod unsupported;
+mod vectors;
 mod work;
 
 #[doc(hidden)]

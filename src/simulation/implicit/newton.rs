@@ -6,17 +6,19 @@ mod search;
 
 pub use along::PathPoint;
 
-use super::axes::Motion;
+use super::axes::{Axes, Motion};
 use super::conjugate_gradients::{Ended, Solved, Stop, Vectors, solve};
 use super::device::{self, LinearSystem, OnDevice};
-use super::differences::{difference, steps_to};
+use super::differences::difference;
 use super::formula::Formula;
+use super::place::Place;
 use super::preconditioner::{Operator, Preconditioner};
 use super::report::ImplicitSteps;
 use super::springs::Springs;
 use super::sums::Sums;
 use super::trial::{Trial, Tried};
-use crate::components::{Displacement, Precision};
+use super::vectors::{clear, copy, none, resize, update};
+use crate::components::{Precision, Reals};
 use crate::error::Error;
 
 /// Of a linear system the residual that is left, at most and at least.
@@ -75,46 +77,50 @@ pub(super) struct Found {
 }
 
 /// Vectors over all axes that Newton's iterations work with.
-#[derive(Default)]
 pub(super) struct Workspace {
-    /// D of nodes.
-    pub inertia: Vec<f64>,
-    /// The equation without D (w − y) and without the forces at the end (N), y = u + h v.
-    pub constant: Vec<f64>,
-    /// Where axes are at the end (m), and how far held axes still have to go (m); empty where none has.
-    pub w: Vec<f64>,
-    pub to_go: Vec<f64>,
-    /// F − R at w (N).
-    pub net: Vec<f64>,
-    /// The residual g (N) at w; of a step that is found the acceleration at its end (m/s²).
-    pub g: Vec<f64>,
-    /// The right-hand side of a linear system (N), where that is not −g.
-    right: Vec<f64>,
-    /// The way of an iteration (m); of a step that is found h v at its end (m).
-    pub p: Vec<f64>,
-    /// Where a product looks, and where a line search began (m).
-    elsewhere: Vec<f64>,
-    /// Where loads look at them, displacements in a step (m).
-    pub steps: Vec<f64>,
+    /// w − y (m): where axes are at the end, w, from where their velocity leads, y = u + h v.
+    pub correction: Reals,
+    /// How far held axes still have to go (m); empty where none has.
+    pub to_go: Reals,
+    /// F − R at w (N), and at the beginning of the step where that counts; else empty.
+    pub net: Reals,
+    pub before: Reals,
+    /// The residual g at w (N). A solve begins with the right-hand side in its place, and leaves what it leaves.
+    residual: Reals,
+    /// The way of an iteration (m).
+    p: Reals,
     vectors: Vectors,
 }
 
 impl Workspace {
-    /// Bytes of all vectors, those of conjugate gradients with them.
-    pub fn bytes(&self) -> usize {
-        let Self { inertia, constant, w, to_go, net, g, right, p, elsewhere, steps, vectors } = self;
-        let own = [inertia, constant, w, to_go, net, g, right, p, elsewhere, steps];
-        own.into_iter().map(|vector| size_of_val(&vector[..])).sum::<usize>() + vectors.bytes()
+    /// Of all axes.
+    pub fn of(axes: &Axes) -> Self {
+        let [to_go, before] = [(); 2].map(|()| none(axes.precision()));
+        let [correction, net, residual, p, direction, image] = [(); 6].map(|()| axes.zeros());
+        Self { correction, to_go, net, before, residual, p, vectors: Vectors { direction, image } }
     }
 
-    pub fn resize(&mut self, length: usize) {
-        let Self { inertia, constant, w, net, g, p, elsewhere, vectors, .. } = self;
-        inertia.resize(length / 3, 0.0);
-        for vector in [constant, w, net, g, p, elsewhere] {
-            vector.resize(length, 0.0);
-        }
-        vectors.resize(length);
+    /// Bytes of all vectors.
+    pub fn bytes(&self) -> usize {
+        let Self { correction, to_go, net, before, residual, p, vectors: Vectors { direction, image } } = self;
+        let all = [correction, to_go, net, before, residual, p, direction, image];
+        all.into_iter().map(|vector| vector.bytes().len()).sum()
     }
+
+    /// Begins at y, with the forces at the beginning of the step where the formula has them.
+    pub fn begin(&mut self, formula: &Formula) {
+        clear(&mut self.correction);
+        if formula.alpha_f != 0.0 {
+            resize(&mut self.before, self.net.len());
+            copy(&mut self.before, &self.net);
+        }
+    }
+}
+
+/// Ones with signs that no motion knows of, on free axes.
+fn fill_with_signs(vector: &mut Reals, free: &[bool]) {
+    let sign = |axis: usize| if (axis.wrapping_mul(0x9e37_79b9) >> 7) & 1 == 0 { 1.0 } else { -1.0 };
+    update(vector, |axis, _| if free[axis] { sign(axis) } else { 0.0 });
 }
 
 /// One step's system.
@@ -142,7 +148,9 @@ impl Newton<'_, '_> {
         let mut tried = self.forces_at_w()?;
         if !tried.sound {
             // what flies on may turn elements inside out that forces would have kept
-            self.space.w.copy_from_slice(&self.motion.u);
+            let (h, motion) = (self.h, self.motion);
+            let back = |axis: usize| if motion.free[axis] { -h * motion.velocity(axis) } else { 0.0 };
+            update(&mut self.space.correction, |axis, _| back(axis));
             tried = self.forces_at_w()?;
         }
         if !tried.sound {
@@ -201,7 +209,14 @@ impl Newton<'_, '_> {
 
     /// Whether held axes have not arrived yet.
     fn moves(&self) -> bool {
-        self.space.to_go.iter().any(|&left| left != 0.0)
+        let to_go = &self.space.to_go;
+        (0..to_go.len()).any(|axis| to_go.get(axis) != 0.0)
+    }
+
+    /// w.
+    fn place(&self) -> Place<'_> {
+        let Self { settings, h, motion, space, .. } = self;
+        Place { formula: &settings.formula, h: *h, motion, correction: &space.correction, beyond: None }
     }
 
     /// Passes that the step may still take.
@@ -210,32 +225,27 @@ impl Newton<'_, '_> {
     }
 
     pub fn forces_at_w(&mut self) -> Result<Tried, Error> {
-        let Workspace { w, net, steps, .. } = &mut *self.space;
-        let at = steps_to(&self.settings.formula, self.h, self.motion, w, steps, &self.trial);
-        let sound = self.trial.forces(w, at, net)?;
-        self.trial.elsewhere = false;
-        Ok(self.trial.judge(sound, &self.motion.free, &self.motion.held, net))
+        let Self { trial, settings, h, motion, space, .. } = self;
+        let Workspace { correction, net, .. } = &mut **space;
+        let place = Place { formula: &settings.formula, h: *h, motion, correction, beyond: None };
+        let sound = trial.forces(&place, net)?;
+        trial.elsewhere = false;
+        Ok(trial.judge(sound, motion, net))
     }
 
     /// g at w, from the forces there; its norm (N).
     fn residual(&mut self) -> f64 {
-        let Workspace { w, net, g, constant, inertia, .. } = &mut *self.space;
-        let stiffness = self.settings.formula.stiffness();
-        self.motion.fill_residual((stiffness, self.h), (w, net), (constant, inertia), g);
-        self.trial.springs.press(stiffness, &self.motion.free, g);
-        self.sums.norm(g)
+        let Self { trial, settings, h, motion, space, sums, .. } = self;
+        let Workspace { correction, net, before, residual, .. } = &mut **space;
+        let place = Place { formula: &settings.formula, h: *h, motion, correction, beyond: None };
+        place.fill_residual(net, before, residual);
+        trial.springs.press(settings.formula.stiffness(), &motion.free, residual);
+        sums.norm(residual)
     }
 
     /// What the residual is compared with (N): loads, reactions and inertia.
     fn scale(&self, tried: &Tried) -> f64 {
-        let Workspace { w, constant, inertia, .. } = &*self.space;
-        let inertial = |axis: usize| {
-            let y = self.motion.predicted(axis, self.h);
-            constant[axis] + inertia[axis / 3] * (w[axis] - y)
-        };
-        let free = (0..w.len()).filter(|&axis| self.motion.free[axis]);
-        let of_inertia: f64 = free.map(|axis| inertial(axis).powi(2)).sum();
-        tried.loads.sqrt() + tried.reactions.sqrt() + of_inertia.sqrt()
+        tried.loads.sqrt() + tried.reactions.sqrt() + self.place().inertial_forces(&self.space.before)
     }
 
     /// Notes how a step ends, and gives what is left of its residual.
@@ -256,26 +266,22 @@ impl Newton<'_, '_> {
     /// About what rounding makes of the residual (N): of a displacement the last digit, times the norm of its row of K,
     /// which a product with signs shows, and its inertia. The forces at w must be known.
     fn rounding(&mut self) -> Result<f64, Error> {
-        let signs = self.signs();
-        let mut rows = vec![0.0; signs.len()];
-        self.stiffness_times(&signs, &mut rows)?;
+        let Self { trial, settings, h, motion, space, .. } = self;
+        let Workspace { correction, net, vectors: Vectors { direction, image }, .. } = &mut **space;
+        let place = Place { formula: &settings.formula, h: *h, motion, correction, beyond: None };
+        fill_with_signs(direction, &motion.free);
+        difference(trial, &place, net, direction, image)?;
         let digit = if self.is_f64() { f64::EPSILON } else { f64::from(f32::EPSILON) };
-        let Workspace { w, inertia, .. } = &*self.space;
-        let free = (0..w.len()).filter(|&axis| self.motion.free[axis]);
-        let square: f64 = free.map(|axis| ((rows[axis].abs() + inertia[axis / 3]) * w[axis]).powi(2)).sum();
+        let (place, rows) = (self.place(), &self.space.vectors.image);
+        let inertia = self.motion.inertia(&self.settings.formula, self.h);
+        let size = |axis: usize| place.displacement(axis).abs().max(place.correction(axis).abs());
+        let free = (0..self.motion.free.len()).filter(|&axis| self.motion.free[axis]);
+        let square: f64 = free.map(|axis| ((rows.get(axis).abs() + inertia.of(axis / 3)) * size(axis)).powi(2)).sum();
         Ok(digit * square.sqrt())
     }
 
-    /// A vector of ones with signs that no motion knows of, on free axes.
-    fn signs(&self) -> Vec<f64> {
-        let sign = |axis: usize| if (axis.wrapping_mul(0x9e37_79b9) >> 7) & 1 == 0 { 1.0 } else { -1.0 };
-        (0..self.space.w.len()).map(|axis| if self.motion.free[axis] { sign(axis) } else { 0.0 }).collect()
-    }
-
     fn is_f64(&self) -> bool {
-        let body = self.trial.axes.bodies.first();
-        let u = body.and_then(|&body| self.trial.world.get::<Displacement>(body));
-        u.is_some_and(|u| u.precision() == Precision::F64)
+        self.trial.axes.precision() == Precision::F64
     }
 
     /// Whether bodies at w do not resist some motion: a solve meets it, whose right-hand side has a part of every one.
@@ -284,52 +290,29 @@ impl Newton<'_, '_> {
         if !self.is_f64() {
             return Ok(false);
         }
-        self.space.right = self.signs();
+        fill_with_signs(&mut self.space.residual, &self.motion.free);
         let Solved { ended, .. } = self.conjugate_gradients(THOROUGH)?;
-        self.space.right = Vec::new();
         Ok(ended == Ended::NegativeCurvature)
     }
 
-    /// c K p (N), by a difference of forces. The forces at w must be known.
-    fn stiffness_times(&mut self, p: &[f64], image: &mut [f64]) -> Result<(), Error> {
-        let Workspace { w, net, elsewhere, steps, .. } = &mut *self.space;
-        difference(&mut self.trial, (&self.settings.formula, self.h, self.motion), (w, net), elsewhere, steps, p, image)
-    }
-
-    /// b = −g − K_fc p_c, with what held axes still have to go.
-    fn set_right(&mut self) -> Result<(), Error> {
-        let to_go = std::mem::take(&mut self.space.to_go);
-        let mut right = std::mem::take(&mut self.space.right);
-        right.resize(to_go.len(), 0.0);
-        let done = self.stiffness_times(&to_go, &mut right);
-        (self.space.to_go, self.space.right) = (to_go, right);
-        let Workspace { right, g, .. } = &mut *self.space;
-        for (axis, right) in right.iter_mut().enumerate() {
-            *right = if self.motion.free[axis] { -g[axis] - *right } else { 0.0 };
+    /// Puts b = −g − K_fc p_c in the place of g, with what held axes still have to go if they move.
+    fn set_right(&mut self, moves: bool) -> Result<(), Error> {
+        let Self { trial, settings, h, motion, space, .. } = self;
+        let Workspace { correction, net, to_go, residual, vectors: Vectors { image, .. }, .. } = &mut **space;
+        // it is 0 where axes are not free
+        update(residual, |_, g| -g);
+        if moves {
+            let place = Place { formula: &settings.formula, h: *h, motion, correction, beyond: None };
+            difference(trial, &place, net, to_go, image)?;
+            update(residual, |axis, b| if motion.free[axis] { b - image.get(axis) } else { 0.0 });
         }
-        done
-    }
-
-    /// −g in the place of b, or back: it is 0 where axes are not free.
-    fn exchange(&mut self) {
-        let Workspace { right, g, .. } = &mut *self.space;
-        std::mem::swap(right, g);
-        right.iter_mut().chain(g).for_each(|force| *force = -*force);
+        Ok(())
     }
 
     /// p ≈ A⁻¹ b on free axes; `moves`: where held axes still have to go.
     fn solve_linear(&mut self, tolerance: f64, moves: bool) -> Result<Way, Lost> {
-        if moves {
-            self.set_right()?
-        } else {
-            self.exchange()
-        }
-        let solved = self.conjugate_gradients(tolerance);
-        let along = self.sums.dot(&self.space.p, &self.space.right);
-        if !moves {
-            self.exchange();
-        }
-        let Solved { ended, iterations } = solved?;
+        self.set_right(moves)?;
+        let Solved { ended, iterations, along } = self.conjugate_gradients(tolerance)?;
         self.report.newton_iterations += 1;
         self.report.negative_curvatures += u64::from(ended == Ended::NegativeCurvature);
         if ended == Ended::NotFinite || !along.is_finite() {
@@ -338,35 +321,23 @@ impl Newton<'_, '_> {
         Ok(Way { along, gives_way: ended == Ended::NegativeCurvature && iterations == 1 })
     }
 
+    /// Of the right-hand side that is in the place of the residual.
     fn conjugate_gradients(&mut self, tolerance: f64) -> Result<Solved, Error> {
         self.follow();
         let Self { trial, settings, motion, space, preconditioner, report, sums, on_device, h, .. } = self;
         let most = settings.budget.map_or(MOST_PRODUCTS, |budget| budget.saturating_sub(trial.count + 1).max(1));
-        let Workspace { inertia, w, net, elsewhere, steps, right, p, vectors, .. } = &mut **space;
-        let of_step = (&settings.formula, *h, *motion);
+        let Workspace { correction, net, residual: right, p, vectors, .. } = &mut **space;
+        let place = Place { formula: &settings.formula, h: *h, motion, correction, beyond: None };
         if trial.is_on_device() {
-            let system = LinearSystem {
-                steps: steps_to(&settings.formula, *h, motion, w, steps, trial),
-                right,
-                w,
-                net,
-                inertia,
-                free: &motion.free,
-                formula: &settings.formula,
-                preconditioner: &**preconditioner,
-            };
+            let system = LinearSystem { place, right, net, preconditioner: &**preconditioner };
             let solved = device::solve(on_device, trial, &system, sums, p, Stop { tolerance, most })?;
             report.linear_iterations += solved.iterations;
             return Ok(solved);
         }
-        let times = |x: &[f64], image: &mut [f64]| -> Result<(), Error> {
-            difference(trial, of_step, (w, net), elsewhere, steps, x, image)?;
-            let nodes = image.as_chunks_mut::<3>().0.iter_mut().zip(x.as_chunks::<3>().0);
-            for (((image, x), inertia), free) in nodes.zip(&*inertia).zip(motion.free.as_chunks::<3>().0) {
-                for axis in 0..3 {
-                    image[axis] = if free[axis] { image[axis] + inertia * x[axis] } else { 0.0 };
-                }
-            }
+        let inertia = motion.inertia(&settings.formula, *h);
+        let times = |x: &Reals, image: &mut Reals| -> Result<(), Error> {
+            difference(trial, &place, net, x, image)?;
+            inertia.add_product(x, &motion.free, image);
             Ok(())
         };
         let solved = solve(sums, right, p, vectors, &mut **preconditioner, Stop { tolerance, most }, times)?;
@@ -376,14 +347,16 @@ impl Newton<'_, '_> {
 
     fn follow(&mut self) {
         // the world is where the residual was taken
-        self.trial.axes.displace(self.trial.world, &self.space.w);
-        let formula = &self.settings.formula;
-        let springs = self.trial.springs.slopes(formula);
-        self.preconditioner.follow(&Operator {
-            world: self.trial.world,
-            bodies: &self.trial.axes.bodies,
-            free: &self.motion.free,
-            inertia: &self.space.inertia,
+        let Self { trial, settings, motion, space, preconditioner, h, .. } = self;
+        let formula = &settings.formula;
+        let place = Place { formula, h: *h, motion, correction: &space.correction, beyond: None };
+        place.displace(trial.axes, trial.world);
+        let springs = trial.springs.slopes(formula);
+        preconditioner.follow(&Operator {
+            world: trial.world,
+            bodies: &trial.axes.bodies,
+            free: &motion.free,
+            inertia: motion.inertia(formula, *h),
             stiffness: formula.stiffness(),
             springs: &springs,
         });

@@ -4,13 +4,15 @@ mod block_jacobi;
 mod columns;
 mod two_level;
 
+use super::equation::Inertia;
+use super::vectors::{combine, copy, none, resize, update};
 use crate::backend::cpu::Cpu;
-use crate::components::{Displacement, Precision};
+use crate::components::{Precision, Reals};
 use crate::scene::schema;
 use bevy_ecs::prelude::*;
 use block_jacobi::BlockJacobi;
 pub(super) use columns::pieces;
-use glam::{DMat3, DVec3};
+use glam::DMat3;
 pub(super) use two_level::{Coarse, RIGID, TwoLevel};
 
 /// The operator A = D + c K of a linear solve, D diagonal (mass and damping), K the tangent stiffness of all bodies.
@@ -24,19 +26,11 @@ pub(in crate::simulation) struct Operator<'a> {
     /// Whether an axis moves freely: not held, and not of an inactive node.
     pub free: &'a [bool],
     /// D of each node (N/m): c_m M, and what damping adds; 0 in statics. Of axes that are not free it does not count.
-    pub inertia: &'a [f64],
+    pub inertia: Inertia<'a>,
     /// c, the share of K.
     pub stiffness: f64,
     /// The springs that touch.
     pub springs: &'a [SpringSlope<'a>],
-}
-
-impl Operator<'_> {
-    /// The numbers of the run.
-    pub fn precision(&self) -> Precision {
-        let body = self.bodies.first().and_then(|&body| self.world.get::<Displacement>(body));
-        body.map_or(Precision::F64, |u| u.precision())
-    }
 }
 
 /// A spring as a part of the operator.
@@ -52,7 +46,7 @@ pub(in crate::simulation) struct SpringSlope<'a> {
 pub(in crate::simulation) trait Preconditioner: Send + Sync {
     /// z = B r (m) of a residual r (N), both over all axes of all bodies; where an axis is not free, r and z are 0. The
     /// same for any number of threads.
-    fn apply(&mut self, cpu: &Cpu, residual: &[f64], z: &mut [f64]);
+    fn apply(&mut self, cpu: &Cpu, residual: &Reals, z: &mut Reals);
 
     /// Follows an operator that may have changed, before each solve: where nodes have gone, which elements are left,
     /// how long the step is. What changes little may stay as it was.
@@ -73,7 +67,7 @@ pub(in crate::simulation) trait Preconditioner: Send + Sync {
 
     /// Moves bodies as a whole in a solution x (m) of a system with that right-hand side (N), which blocks and coarse
     /// levels alone have found: so that it keeps the momentum that [`apply`](Self::apply) keeps.
-    fn settle(&self, _right: &[f64], _x: &mut [f64]) {}
+    fn settle(&self, _right: &Reals, _x: &mut Reals) {}
 
     /// What it is made of, in words, once it follows an operator; and the bytes that it holds.
     fn holds(&self) -> (String, Vec<(&'static str, u64)>);
@@ -83,8 +77,8 @@ pub(in crate::simulation) trait Preconditioner: Send + Sync {
 pub(in crate::simulation) struct Identity;
 
 impl Preconditioner for Identity {
-    fn apply(&mut self, _: &Cpu, residual: &[f64], z: &mut [f64]) {
-        z.copy_from_slice(residual);
+    fn apply(&mut self, _: &Cpu, residual: &Reals, z: &mut Reals) {
+        copy(z, residual);
     }
 
     fn block(&self, _: usize) -> DMat3 {
@@ -97,42 +91,40 @@ impl Preconditioner for Identity {
 }
 
 /// The diagonal D alone. It keeps linear momentum however early a solve ends.
-#[derive(Default)]
 pub(in crate::simulation) struct Mass {
-    per_inertia: Vec<f64>,
+    per_inertia: Reals,
 }
 
 impl Preconditioner for Mass {
-    fn apply(&mut self, _: &Cpu, residual: &[f64], z: &mut [f64]) {
-        for ((z, r), per_inertia) in z.iter_mut().zip(residual).zip(&self.per_inertia) {
-            *z = r * per_inertia;
-        }
+    fn apply(&mut self, _: &Cpu, residual: &Reals, z: &mut Reals) {
+        copy(z, residual);
+        combine(z, &self.per_inertia, |r, per_inertia| r * per_inertia);
     }
 
     fn follow(&mut self, operator: &Operator<'_>) {
-        let inverse = |(axis, &free): (usize, &bool)| {
-            let inertia = operator.inertia[axis / 3];
-            if free && inertia > 0.0 { 1.0 / inertia } else { 0.0 }
+        let inverse = |axis: usize| {
+            let inertia = operator.inertia.of(axis / 3);
+            if operator.free[axis] && inertia > 0.0 { 1.0 / inertia } else { 0.0 }
         };
-        self.per_inertia.clear();
-        self.per_inertia.extend(operator.free.iter().enumerate().map(inverse));
+        resize(&mut self.per_inertia, operator.free.len());
+        update(&mut self.per_inertia, |axis, _| inverse(axis));
     }
 
     fn block(&self, node: usize) -> DMat3 {
-        DMat3::from_diagonal(DVec3::from_slice(&self.per_inertia[3 * node..]))
+        DMat3::from_diagonal(self.per_inertia.vector(node))
     }
 
     fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
-        ("masses".into(), vec![("masses", size_of_val(&self.per_inertia[..]) as u64)])
+        ("masses".into(), vec![("masses", self.per_inertia.bytes().len() as u64)])
     }
 }
 
-/// The one of a name.
-pub(in crate::simulation) fn of_name(name: schema::Preconditioner) -> Box<dyn Preconditioner> {
+/// The one of a name, for vectors of some numbers.
+pub(in crate::simulation) fn of_name(name: schema::Preconditioner, numbers: Precision) -> Box<dyn Preconditioner> {
     match name {
-        schema::Preconditioner::TwoLevel => Box::new(TwoLevel::default()),
-        schema::Preconditioner::BlockJacobi => Box::new(BlockJacobi::default()),
-        schema::Preconditioner::Mass => Box::new(Mass::default()),
+        schema::Preconditioner::TwoLevel => Box::new(TwoLevel::of(numbers)),
+        schema::Preconditioner::BlockJacobi => Box::new(BlockJacobi::of(numbers)),
+        schema::Preconditioner::Mass => Box::new(Mass { per_inertia: none(numbers) }),
         schema::Preconditioner::Identity => Box::new(Identity),
     }
 }

@@ -4,7 +4,7 @@
 use super::axes::Axes;
 use super::formula::Formula;
 use super::preconditioner::SpringSlope;
-use crate::components::{Clock, SpringForces, TouchingSpring};
+use crate::components::{Clock, Reals, SpringForces, TouchingSpring};
 use crate::error::Error;
 use crate::systems::{find_surface_springs, find_thread_springs, find_ties, find_tool_springs, seek_surfaces};
 use bevy_ecs::prelude::*;
@@ -45,18 +45,18 @@ impl Springs {
     }
 
     /// Takes a share of their forces from the residual (N) of free axes.
-    pub fn press(&self, share: f64, free: &[bool], residual: &mut [f64]) {
+    pub fn press(&self, share: f64, free: &[bool], residual: &mut Reals) {
         for spring in &self.touching {
             spring.add(spring.force * -share, residual);
             for axis in spring.parts.iter().flat_map(|&(first, _)| first..first + 3).filter(|&axis| !free[axis]) {
-                residual[axis] = 0.0;
+                residual.set(axis, 0.0);
             }
         }
     }
 
     /// Adds a share of their part of K p (N) to that of the rest, where an axis that moves by 1 m makes a step of so
     /// many m.
-    pub fn add_product(&self, share: f64, step: f64, p: &[f64], image: &mut [f64]) {
+    pub fn add_product(&self, share: f64, step: f64, p: &Reals, image: &mut Reals) {
         for spring in &self.touching {
             let [of_place, of_step] = spring.slopes;
             spring.add((of_place + of_step * step) * spring.relative(p) * share, image);
@@ -74,7 +74,7 @@ impl Springs {
     }
 
     /// Whether they resist a motion of all axes (m).
-    pub fn resist(&self, motion: &[f64]) -> bool {
+    pub fn resist(&self, motion: &Reals) -> bool {
         let (mut resists, mut most) = (0.0, 0.0);
         for spring in &self.touching {
             let [of_place, of_step] = spring.slopes;

@@ -6,13 +6,13 @@ use super::super::ScheduledPass;
 use super::super::explain::SolverInUse;
 use super::axes::{Axes, Motion};
 use super::device::{bring_state, send_state};
-use super::differences::steps_to;
 use super::formula::Formula;
 use super::free_motions::{FreeMotion, free_motions};
 use super::grasped::Grasped;
 use super::iterations::{Iterations, OfForces};
 use super::kept::Kept;
 use super::newton::{Found, Lost, Newton, PathPoint, Settings, Workspace};
+use super::place::Place;
 use super::report::ImplicitSteps;
 use super::springs::Springs;
 use super::trial::Trial;
@@ -157,7 +157,7 @@ impl Statics {
                     if !growth.failed() {
                         return Ok(Attempt::NotFound);
                     }
-                    self.axes.displace(world, &self.iterations.motion.u);
+                    self.axes.put_back(world, &self.iterations.motion);
                 }
             }
         }
@@ -165,8 +165,9 @@ impl Statics {
 
     /// Rest where bodies are.
     fn rest(&self, remaining: f64, unstable: bool, path: Vec<PathPoint>) -> Rest {
-        let Iterations { space, report, sums, .. } = &self.iterations;
-        Rest { remaining, displaced: sums.norm(&space.w), iterations: report.newton_iterations, unstable, path }
+        let place = self.iterations.place(1.0);
+        let displaced = (0..self.axes.len()).map(|axis| place.displacement(axis).powi(2)).sum::<f64>().sqrt();
+        Rest { remaining, displaced, iterations: self.iterations.report.newton_iterations, unstable, path }
     }
 
     /// Follows the path of equilibria from no load to all of it, or as far as it is wanted.
@@ -192,10 +193,7 @@ impl Statics {
         let trial = newton.trial;
         iterations.count(trial.count);
         let path = path?;
-        let Workspace { w, p: step, g: acceleration, .. } = &mut iterations.space;
-        step.fill(0.0);
-        acceleration.fill(0.0);
-        axes.arrive(trial.world, w, step, acceleration);
+        iterations.place(1.0).arrive(axes, trial.world);
         let unstable = path.last().is_some_and(|point| point.unstable);
         Ok(Attempt::Found(self.rest(0.0, unstable, path)))
     }
@@ -243,27 +241,23 @@ impl Statics {
         iterations.count(trial.count);
         found?;
         let Some(rest) = rest else { return Ok(Balance::NotFound) };
-        let Iterations { settings, motion, space, .. } = &mut *iterations;
-        let Workspace { w, net, steps, .. } = &mut *space;
-        match steps_to(&settings.formula, 1.0, motion, w, steps, &trial) {
-            Some(steps) => trial.noted_forces(w, Some(steps), net)?,
-            None => trial.forces(w, None, net)?,
+        let Iterations { settings, motion, space: Workspace { correction, net, .. }, .. } = &mut *iterations;
+        let place = Place { formula: &settings.formula, h: 1.0, motion, correction, beyond: None };
+        match trial.looks_at_steps() {
+            true => trial.noted_forces(&place, net)?,
+            false => trial.forces(&place, net)?,
         };
-        grasped.note(trial.world, (&settings.formula, 1.0, motion), space);
+        grasped.note(trial.world, &place, net);
         grasped.load(trial.world);
-        let Workspace { w, p: step, g: acceleration, .. } = space;
-        step.fill(0.0);
-        acceleration.fill(0.0);
-        axes.arrive(trial.world, w, step, acceleration);
+        place.arrive(axes, trial.world);
         Ok(rest)
     }
 }
 
 /// Begins where bodies stand, without inertia.
-fn begin(space: &mut Workspace, motion: &Motion) {
-    space.inertia.fill(0.0);
-    space.constant.fill(0.0);
-    space.w.copy_from_slice(&motion.u);
+fn begin(space: &mut Workspace, motion: &mut Motion) {
+    motion.rate = 0.0;
+    space.begin(&Formula::of_rest());
 }
 
 /// That a path was not followed to its end.

@@ -4,16 +4,16 @@ use super::super::ScheduledPass;
 use super::super::explain::SolverInUse;
 use super::axes::{Axes, Motion};
 use super::device::{bring_state, send_state};
-use super::differences::steps_to;
 use super::formula::Formula;
 use super::grasped::Grasped;
 use super::iterations::{Iterations, OfForces};
-use super::kept::Kept;
 use super::newton::{Found, Lost, Settings, Workspace};
+use super::place::Place;
 use super::report::ImplicitSteps;
 use super::springs::Springs;
 use super::step_control::StepControl;
 use super::trial::Trial;
+use super::vectors::{none, resize};
 use super::work::Works;
 use crate::components::*;
 use crate::error::{Criterion, Error};
@@ -54,7 +54,7 @@ impl Implicit {
         let axes = Axes::of(world);
         let settings = Settings { formula: Formula::of(scheme), newton, tolerance, budget };
         let iterations = Iterations::new(settings, preconditioner, &axes, world);
-        let works = scene.output.energies_every.map(|_| Works::default());
+        let works = scene.output.energies_every.map(|_| Works::of(&axes));
         let control = adaptive.map(|asked| StepControl::of(asked, step, &axes, world));
         Some(Self { axes, iterations, springs: Springs::default(), works, control })
     }
@@ -115,6 +115,7 @@ impl Implicit {
         };
         if found.is_err() || back {
             self.iterations.kept.put_back(world, |_| true);
+            self.axes.put_back(world, &self.iterations.motion);
         }
         send_state(world)?;
         if back {
@@ -157,13 +158,7 @@ impl Implicit {
         trial.net(&mut space.net);
         held_axes(trial.world, axes, motion, &mut space.to_go);
         let grasped = Grasped::hold(trial.world, axes, motion, &mut space.to_go);
-        for (node, inertia) in space.inertia.iter_mut().enumerate() {
-            *inertia = motion.inertia(&formula, h, node);
-        }
-        for axis in 0..space.w.len() {
-            space.constant[axis] = motion.constant(&formula, h, axis, space.net[axis]);
-            space.w[axis] = motion.predicted(axis, h);
-        }
+        space.begin(&formula);
         // loads are those of the end
         trial.world.resource_mut::<Clock>().step += 1;
         set_trying(trial.world, true);
@@ -175,14 +170,13 @@ impl Implicit {
             Err(_) => false,
         };
         if taken {
-            let Iterations { motion, space, kept, .. } = &mut *iterations;
-            keep_forces(&mut trial, (&formula, h, motion), kept, space)?;
-            grasped.note(trial.world, (&formula, h, motion), space);
-            let Workspace { w, p: step, g: acceleration, .. } = space;
-            axes.arrive(trial.world, w, step, acceleration);
+            keep_forces(&mut trial, h, iterations)?;
+            let place = iterations.place(h);
+            grasped.note(trial.world, &place, &iterations.space.net);
             if let Some(works) = works {
-                works.end(trial.world, axes, motion, w, step, h);
+                works.end(trial.world, axes, &place);
             }
+            place.arrive(axes, trial.world);
         }
         iterations.count(trial.count);
         found.map(|Found { left, .. }| taken.then_some(left))
@@ -196,56 +190,52 @@ fn set_trying(world: &mut World, trying: bool) {
 }
 
 /// Forces and accelerations at the beginning of the motion.
-fn begin(trial: &mut Trial<'_>, motion: &mut Motion, net: &mut [f64], formula: &Formula) -> Result<(), Lost> {
+fn begin(trial: &mut Trial<'_>, motion: &mut Motion, net: &mut Reals, formula: &Formula) -> Result<(), Lost> {
     trial.world.resource_mut::<Signals>().evaluate((0.0, 0.0), [0.0, 0.0]);
-    trial.forces(&motion.u, None, net)?;
+    trial.present_forces(net)?;
     if formula.needs_acceleration() {
         for axis in (0..net.len()).filter(|&axis| motion.free[axis]) {
-            motion.a[axis] = -(net[axis] + motion.damping(axis) * motion.v[axis]) / motion.mass[axis / 3];
+            let forces = net.get(axis) + motion.damping(axis) * motion.velocity(axis);
+            motion.a.set(axis, -forces / motion.mass.get(axis / 3));
         }
     }
     Ok(())
 }
 
 /// How far held axes go in the step (m), as `boundary` has written it; nothing where none does.
-pub(super) fn held_axes(world: &World, axes: &Axes, motion: &Motion, to_go: &mut Vec<f64>) {
+pub(super) fn held_axes(world: &World, axes: &Axes, motion: &Motion, to_go: &mut Reals) {
     let goes = |(body, range): (Entity, Range<usize>)| {
         let Some(step) = world.get::<DisplacementIncrement>(body) else { return false };
         let first = range.start;
-        range.into_iter().any(|axis| motion.held[axis] && step.get(axis - first) != 0.0)
+        range.into_iter().any(|axis| motion.is_held(axis) && step.get(axis - first) != 0.0)
     };
     if !axes.each().any(goes) {
-        *to_go = Vec::new();
+        *to_go = none(axes.precision());
         return;
     }
-    to_go.resize(axes.len(), 0.0);
+    resize(to_go, axes.len());
     for (body, range) in axes.each() {
         let Some(step) = world.get::<DisplacementIncrement>(body) else { continue };
         for i in 0..range.len() {
             let axis = range.start + i;
-            to_go[axis] = if motion.held[axis] { step.get(i) } else { 0.0 };
+            to_go.set(axis, if motion.is_held(axis) { step.get(i) } else { 0.0 });
         }
     }
 }
 
 /// Takes the forces at the end once more where something is kept of them: memories, elements that were turned inside
 /// out and may be, what touches.
-fn keep_forces(
-    trial: &mut Trial<'_>,
-    (formula, h, motion): (&Formula, f64, &Motion),
-    kept: &Kept,
-    space: &mut Workspace,
-) -> Result<(), Error> {
+fn keep_forces(trial: &mut Trial<'_>, h: f64, iterations: &mut Iterations) -> Result<(), Error> {
     let world = &mut *trial.world;
     let notes = world.query::<&OnInversion>().iter(world).any(|policy| policy.0 != Inversion::Stop);
     let touches = world.resource::<Clock>().springs.is_some();
-    if kept.has_memories() || notes || touches || trial.elsewhere {
+    if iterations.kept.has_memories() || notes || touches || trial.elsewhere {
         set_trying(trial.world, false);
         // forces that were no numbers are in them
-        kept.put_back(trial.world, |column| column.subject == Subject::Memory);
-        let Workspace { w, steps, net, .. } = space;
-        let at = steps_to(formula, h, motion, w, steps, trial);
-        trial.noted_forces(w, at, net)?;
+        iterations.kept.put_back(trial.world, |column| column.subject == Subject::Memory);
+        let Iterations { settings, motion, space: Workspace { correction, net, .. }, .. } = iterations;
+        let place = Place { formula: &settings.formula, h, motion, correction, beyond: None };
+        trial.noted_forces(&place, net)?;
     }
     Ok(())
 }

@@ -1,14 +1,14 @@
 //! Steps chosen by an estimate of their error, from what a step shows of the next term of its series.
 //!
-//! The error of a step of h is that of displacements, e (see [`Formula::local_error`]). Within a frame of T, the
+//! The error of a step of h is that of displacements, e (see [`Formula::local_error`](super::formula::Formula::local_error)). Within a frame of T, the
 //! longest step, T/h such steps add up to ‖e‖ T/h, which is held below the tolerance: an error per unit of time, so
 //! that the error of a motion falls in proportion to the tolerance, whatever the order. Norms are root mean squares
 //! over mass. The next length is that of a proportional and integral controller (Gustafsson 1991), with η = error over
 //! tolerance and p the order: h⁺ = .9 h η^(−.7/p) η₋^(.4/p), η₋ of the step before.
 
 use super::super::run::WHOLE;
-use super::axes::{Axes, Motion};
-use super::formula::Formula;
+use super::axes::Axes;
+use super::place::Place;
 use crate::components::{Clock, RestPosition};
 use crate::scene::schema::ErrorControl;
 use bevy_ecs::prelude::*;
@@ -209,21 +209,18 @@ fn extent(world: &World, body: Entity) -> f64 {
     DVec3::length(high - low)
 }
 
-/// The error of a step (m) that leads to accelerations, and how far it leads from rest (m): root mean squares over
+/// The error of a step (m) that leads to a place, and how far it leads from rest (m): root mean squares over
 /// mass.
-pub(super) fn error_and_reach(
-    (formula, h, motion): (&Formula, f64, &Motion),
-    w: &[f64],
-    acceleration: &[f64],
-) -> [f64; 2] {
+pub(super) fn error_and_reach(place: &Place<'_>) -> [f64; 2] {
+    let Place { formula, h, motion, .. } = place;
     let (mut mass, mut error, mut reach) = (0.0, 0.0, 0.0);
-    for axis in 0..w.len() {
-        let own = motion.mass[axis / 3];
+    for axis in 0..motion.free.len() {
+        let own = motion.mass.get(axis / 3);
         // three axes are one node
         mass += own / 3.0;
-        reach += own * w[axis] * w[axis];
+        reach += own * place.displacement(axis).powi(2);
         if motion.free[axis] {
-            error += own * formula.local_error(h, [motion.acceleration(axis), acceleration[axis]]).powi(2);
+            error += own * formula.local_error(*h, [motion.acceleration(axis), place.arrival(axis).1]).powi(2);
         }
     }
     let mean = |sum: f64| if mass > 0.0 { (sum / mass).sqrt() } else { 0.0 };

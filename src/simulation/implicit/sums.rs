@@ -1,6 +1,9 @@
 //! Sums over all axes, the same for any number of threads: of blocks of so many numbers, added pair by pair.
 
+use super::vectors::with_numbers;
 use crate::backend::cpu::Cpu;
+use crate::components::Reals;
+use crate::math::Scalar;
 use crate::simulation::frequency::dot as dot_of_block;
 
 /// Numbers of a block.
@@ -22,7 +25,11 @@ impl Sums {
     }
 
     /// a·b.
-    pub fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
+    pub fn dot(&self, a: &Reals, b: &Reals) -> f64 {
+        with_numbers!(a, T => self.dot_of(a.slice::<T>(), b.slice::<T>()))
+    }
+
+    fn dot_of<T: Scalar>(&self, a: &[T], b: &[T]) -> f64 {
         let blocks = a.len().div_ceil(BLOCK);
         let of = |block: usize| {
             let range = block * BLOCK..a.len().min((block + 1) * BLOCK);
@@ -36,7 +43,7 @@ impl Sums {
     }
 
     /// ‖a‖.
-    pub fn norm(&self, a: &[f64]) -> f64 {
+    pub fn norm(&self, a: &Reals) -> f64 {
         self.dot(a, a).sqrt()
     }
 }

@@ -1,10 +1,13 @@
 //! Forces at a trial displacement: the systems of a step up to its loads, run in the world, and nothing kept of it.
 
 use super::super::ScheduledPass;
-use super::axes::Axes;
+use super::axes::{Axes, Motion};
+use super::place::Place;
 use super::springs::Springs;
+use super::vectors::{copy_to, with_numbers};
 use crate::components::*;
 use crate::error::Error;
+use crate::math::Scalar;
 use crate::systems::Phase;
 use bevy_ecs::prelude::*;
 
@@ -66,44 +69,49 @@ impl Trial<'_> {
         forces.into_iter().any(|pass| pass.reads(name))
     }
 
-    /// The forces F − R (N) at displacements (m), and with `steps` at velocities (as displacements of a step), kept in
-    /// the columns of forces, and the springs that touch there.
-    pub fn forces(&mut self, u: &[f64], steps: Option<&[f64]>, net: &mut [f64]) -> Result<bool, Error> {
-        let sound = self.find((u, steps), SpringForces::Tried, net)?;
+    /// The forces F − R (N) at a place, and where loads look at them at its velocities, kept in the columns of forces,
+    /// and the springs that touch there.
+    pub fn forces(&mut self, place: &Place<'_>, net: &mut Reals) -> Result<bool, Error> {
+        let sound = self.find(Some(place), SpringForces::Tried, net)?;
         self.springs.find(self.world, self.axes);
         Ok(sound)
     }
 
-    /// The same without what touches, whose springs stay those of before.
-    pub fn forces_without_springs(&mut self, u: &[f64], steps: Option<&[f64]>, net: &mut [f64]) -> Result<bool, Error> {
-        self.find((u, steps), SpringForces::Omitted, net)
+    /// The same where nodes are.
+    pub fn present_forces(&mut self, net: &mut Reals) -> Result<bool, Error> {
+        let sound = self.find(None, SpringForces::Tried, net)?;
+        self.springs.find(self.world, self.axes);
+        Ok(sound)
+    }
+
+    /// The same at a place without what touches, whose springs stay those of before.
+    pub fn forces_without_springs(&mut self, place: &Place<'_>, net: &mut Reals) -> Result<bool, Error> {
+        self.find(Some(place), SpringForces::Omitted, net)
     }
 
     /// The same with what touches among the loads, which is noted.
-    pub fn noted_forces(&mut self, u: &[f64], steps: Option<&[f64]>, net: &mut [f64]) -> Result<bool, Error> {
-        self.find((u, steps), SpringForces::Noted, net)
+    pub fn noted_forces(&mut self, place: &Place<'_>, net: &mut Reals) -> Result<bool, Error> {
+        self.find(Some(place), SpringForces::Noted, net)
     }
 
-    fn find(
-        &mut self,
-        (u, steps): (&[f64], Option<&[f64]>),
-        touching: SpringForces,
-        net: &mut [f64],
-    ) -> Result<bool, Error> {
+    fn find(&mut self, place: Option<&Place<'_>>, touching: SpringForces, net: &mut Reals) -> Result<bool, Error> {
         if let Some(springs) = &mut self.world.resource_mut::<Clock>().springs {
             springs.forces = touching;
         }
         self.count += 1;
         self.elsewhere = true;
-        self.axes.displace(self.world, u);
-        if let Some(steps) = steps {
-            self.axes.write::<DisplacementIncrement>(self.world, steps, |column| &mut column.0);
+        let with_velocities = place.is_some() && self.looks_at_steps();
+        if let Some(place) = place {
+            place.displace(self.axes, self.world);
+            if with_velocities {
+                place.write_steps(self.axes, self.world);
+            }
         }
         if let Some(mut trial) = self.world.get_resource_mut::<TrialForces>() {
             trial.inverted = false;
         }
         match self.is_on_device() {
-            true => self.forces_on_device(steps.is_some())?,
+            true => self.forces_on_device(with_velocities)?,
             false => self.run(|pass| pass.finds_forces)?,
         }
         self.net(net);
@@ -111,33 +119,33 @@ impl Trial<'_> {
     }
 
     /// F − R (N) as the columns have them.
-    pub fn net(&self, net: &mut [f64]) {
+    pub fn net(&self, net: &mut Reals) {
         for (body, range) in self.axes.each() {
             let entity = self.world.entity(body);
             let Some(internal) = entity.get::<InternalForce>() else { continue };
-            let net = &mut net[range];
-            internal.read(net);
-            match entity.get::<ExternalForce>().map(|external| &external.0) {
-                Some(Reals::F32(external)) => net.iter_mut().zip(external).for_each(|(f, &r)| *f -= f64::from(r)),
-                Some(Reals::F64(external)) => net.iter_mut().zip(external).for_each(|(f, &r)| *f -= r),
-                None => {}
-            }
+            copy_to(net, range.start, internal);
+            let Some(external) = entity.get::<ExternalForce>() else { continue };
+            with_numbers!(net, T => {
+                let net = &mut net.slice_mut::<T>()[range];
+                net.iter_mut().zip(external.slice::<T>()).for_each(|(f, &r)| *f = *f - r);
+            });
         }
     }
 
     /// What the columns of forces and the springs come to.
-    pub fn judge(&self, sound: bool, free: &[bool], held: &[bool], net: &[f64]) -> Tried {
+    pub fn judge(&self, sound: bool, motion: &Motion, net: &Reals) -> Tried {
         let mut tried = Tried { loads: self.springs.square(), ..Tried::default() };
         let mut all = 0.0;
         for (body, range) in self.axes.each() {
             let Some(external) = self.world.get::<ExternalForce>(body) else { continue };
-            for i in (0..range.len()).filter(|i| free[range.start + i]) {
+            for i in (0..range.len()).filter(|i| motion.free[range.start + i]) {
                 tried.loads += external.get(i).powi(2);
             }
         }
-        for (axis, force) in net.iter().enumerate() {
+        for axis in 0..net.len() {
+            let force = net.get(axis);
             all += force;
-            if held[axis] {
+            if motion.is_held(axis) {
                 tried.reactions += force * force;
             }
         }
@@ -146,32 +154,33 @@ impl Trial<'_> {
     }
 
     /// How far (in units of p) a difference of forces goes along p (m).
-    pub fn reach(&self, p: &[f64]) -> f64 {
-        let strain = match &self.axes.heights {
-            Reals::F32(heights) => largest_share(p, heights),
-            Reals::F64(heights) => largest_share(p, heights),
-        };
-        let precision = self.axes.bodies.first().and_then(|&body| self.world.get::<Displacement>(body));
-        let of_precision = match precision.map(|u| u.precision()) {
-            Some(Precision::F64) => STRAIN[1],
-            _ => STRAIN[0],
+    pub fn reach(&self, p: &Reals) -> f64 {
+        let heights = &self.axes.heights;
+        let strain = with_numbers!(p, T => largest_share(p.slice::<T>(), heights.slice::<T>()));
+        let of_precision = match self.axes.precision() {
+            Precision::F64 => STRAIN[1],
+            Precision::F32 => STRAIN[0],
         };
         if strain > 0.0 { of_precision / strain } else { 0.0 }
     }
 }
 
-/// The largest |p|/h of all axes. Eight maxima side by side: one alone waits for each comparison.
-fn largest_share<T: Copy + Into<f64>>(p: &[f64], heights: &[T]) -> f64 {
-    let (chunks, rest) = p.as_chunks::<8>();
-    let (of_chunks, of_rest) = heights.as_chunks::<8>();
+/// The largest |p|/h of all axes, h that of their nodes. Eight maxima side by side: one alone waits for each comparison.
+fn largest_share<T: Scalar>(p: &[T], heights: &[T]) -> f64 {
+    let share = |p: &[T; 3], height: T| {
+        let along = |largest: f64, p: &T| if p.to_f64().abs() > largest { p.to_f64().abs() } else { largest };
+        p.iter().fold(0.0, along) / height.to_f64()
+    };
+    let larger = |largest: f64, share: f64| if share > largest { share } else { largest };
+    let nodes = p.as_chunks::<3>().0;
+    let ((chunks, rest), (of_chunks, of_rest)) = (nodes.as_chunks::<8>(), heights.as_chunks::<8>());
     let mut largest = [0.0_f64; 8];
     for (p, heights) in chunks.iter().zip(of_chunks) {
         for i in 0..8 {
-            let share = p[i].abs() / heights[i].into();
             // what is no number is none that is larger
-            largest[i] = if share > largest[i] { share } else { largest[i] };
+            largest[i] = larger(largest[i], share(&p[i], heights[i]));
         }
     }
-    let last = rest.iter().zip(of_rest).map(|(p, &height)| p.abs() / height.into());
-    largest.into_iter().chain(last).fold(0.0, f64::max)
+    let last = rest.iter().zip(of_rest).map(|(p, &height)| share(p, height));
+    largest.into_iter().chain(last).fold(0.0, larger)
 }

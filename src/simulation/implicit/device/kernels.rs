@@ -109,7 +109,7 @@ impl Vectors {
         let partials = numbers("partials", 2 * extent.groups.max(extent.image_groups) as usize);
         // where a node has no element nothing is strained
         let height = |height: f64| if height > 0.0 && height.is_finite() { height as f32 } else { f32::MAX };
-        let heights: Vec<f32> = (0..nodes).map(|node| height(axes.heights.get(3 * node))).collect();
+        let heights: Vec<f32> = (0..nodes).map(|node| height(axes.heights.get(node))).collect();
         Self {
             solve,
             solution,

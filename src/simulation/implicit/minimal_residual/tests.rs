@@ -3,29 +3,30 @@
 use super::super::preconditioner::Identity;
 use super::*;
 use crate::backend::cpu::Cpu;
+use crate::components::Precision;
 
 /// D + a aᵀ of 40 rows.
-fn times(diagonal: &[f64], a: &[f64], p: &[f64], image: &mut [f64]) {
-    let along: f64 = a.iter().zip(p).map(|(a, p)| a * p).sum();
-    for i in 0..p.len() {
-        image[i] = diagonal[i] * p[i] + a[i] * along;
-    }
+fn times(diagonal: &[f64], a: &[f64], p: &Reals, image: &mut Reals) {
+    let along: f64 = a.iter().enumerate().map(|(i, a)| a * p.get(i)).sum();
+    update(image, |i, _| diagonal[i] * p.get(i) + a[i] * along);
 }
 
 fn solved(diagonal: &[f64]) -> (Solved, f64) {
     let count = diagonal.len();
     let a: Vec<f64> = (0..count).map(|i| (i as f64 * 0.7).sin()).collect();
-    let b: Vec<f64> = (0..count).map(|i| 1.0 + (i as f64).cos()).collect();
-    let (sums, mut x) = (Sums::on(&Cpu::new(1, 0, Default::default())), vec![0.0; count]);
+    let b = Reals::F64((0..count).map(|i| 1.0 + (i as f64).cos()).collect());
+    let zeros = || Reals::zeros(Precision::F64, count);
+    let (sums, mut x) = (Sums::on(&Cpu::new(1, 0, Default::default())), zeros());
     let mut preconditioner = Identity;
+    let mut vectors = Vectors([(); 7].map(|()| zeros()));
     let stop = Stop { tolerance: 1e-10, most: 200 };
-    let found = solve(&sums, &b, &mut x, &mut Vectors::default(), &mut preconditioner, stop, |p, image| {
+    let found = solve(&sums, &b, &mut x, &mut vectors, &mut preconditioner, stop, |p, image| {
         times(diagonal, &a, p, image);
         Ok(())
     });
-    let mut image = vec![0.0; count];
+    let mut image = zeros();
     times(diagonal, &a, &x, &mut image);
-    let left: f64 = image.iter().zip(&b).map(|(image, b)| (image - b).powi(2)).sum::<f64>().sqrt();
+    let left: f64 = (0..count).map(|i| (image.get(i) - b.get(i)).powi(2)).sum::<f64>().sqrt();
     (found.unwrap(), left)
 }
 

@@ -6,9 +6,11 @@
 //! point K is not positive, so that the solves are those of minimal residuals.
 
 use super::super::minimal_residual::{self as minres, Vectors};
+use super::super::place::Place;
 use super::super::step::held_axes;
-use super::{Lost, MOST_PRODUCTS, Newton, ROUNDING_FROM, Stop, difference};
-use crate::components::Signals;
+use super::super::vectors::{clear, combine, copy, update};
+use super::{Lost, MOST_PRODUCTS, Newton, ROUNDING_FROM, Stop, difference, fill_with_signs};
+use crate::components::{Reals, Signals};
 use crate::error::Error;
 use crate::scene::schema::ArcLength;
 use bevy_ecs::prelude::World;
@@ -56,9 +58,9 @@ struct Follower {
     end: f64,
     factor: f64,
     /// −∂g/∂ℓ (N), p_ℓ and p_g (m).
-    slope: Vec<f64>,
-    of_factor: Vec<f64>,
-    of_residual: Vec<f64>,
+    slope: Reals,
+    of_factor: Reals,
+    of_residual: Reals,
     vectors: Vectors,
 }
 
@@ -71,20 +73,21 @@ impl Newton<'_, '_> {
         arc: &ArcLength,
         mut at: impl FnMut(&mut World, usize, &PathPoint) -> Result<(), Error>,
     ) -> Result<Vec<PathPoint>, Lost> {
-        let zeros = || vec![0.0; self.space.w.len()];
+        let axes = self.trial.axes;
+        let zeros = || axes.zeros();
         let (mut points, mut way, mut tangent, mut from) = (Vec::<PathPoint>::new(), zeros(), zeros(), zeros());
         let (slope, of_factor, of_residual) = (zeros(), zeros(), zeros());
-        let mut path = Follower { end, factor: 0.0, slope, of_factor, of_residual, vectors: Vectors::default() };
+        let mut path = Follower { end, factor: 0.0, slope, of_factor, of_residual, vectors: Vectors::of(axes) };
         let nodes = (self.motion.free.iter().filter(|&&free| free).count().max(1) as f64 / 3.0).sqrt();
         let longest = arc.longest.map_or(f64::INFINITY, |longest| longest * nodes);
-        from.copy_from_slice(&self.space.w);
+        copy(&mut from, &self.space.correction);
         self.correct(&mut path, Constraint::Factor(0.0), &from)?;
         let (mut first, mut length) = (0.0, 0.0);
         while points.len() < arc.points as usize && path.factor != 1.0 {
             let factor = path.factor;
-            from.copy_from_slice(&self.space.w);
+            copy(&mut from, &self.space.correction);
             self.find_slope(&mut path)?;
-            tangent.copy_from_slice(&path.of_factor);
+            copy(&mut tangent, &path.of_factor);
             let size = self.sums.norm(&tangent);
             if size == 0.0 {
                 return Err(Lost::Because("loads and motions change nothing along the path".into()));
@@ -109,9 +112,7 @@ impl Newton<'_, '_> {
                 path.factor = factor;
                 length *= CHANGE[0];
             };
-            for (axis, way) in way.iter_mut().enumerate() {
-                *way = if self.motion.free[axis] { self.space.w[axis] - from[axis] } else { 0.0 };
-            }
+            update(&mut way, |axis, _| self.went(axis, &from));
             let unstable = self.gives_way_along(&mut path)?;
             self.forces_at_w()?;
             let went = self.sums.norm(&way) / nodes;
@@ -129,15 +130,13 @@ impl Newton<'_, '_> {
     fn advance(
         &mut self,
         path: &mut Follower,
-        (from, tangent): (&[f64], &[f64]),
+        (from, tangent): (&Reals, &Reals),
         (length, ahead): (f64, f64),
     ) -> Result<u64, Lost> {
         let factor = path.factor;
         let left = 1.0 - factor;
         let goes = |newton: &mut Self, path: &mut Follower, by: f64, constraint: Constraint| {
-            for (w, (from, tangent)) in newton.space.w.iter_mut().zip(from.iter().zip(tangent)) {
-                *w = from + by * tangent;
-            }
+            update(&mut newton.space.correction, |axis, _| from.get(axis) + by * tangent.get(axis));
             path.factor = factor + by;
             newton.correct(path, constraint, from)
         };
@@ -154,10 +153,7 @@ impl Newton<'_, '_> {
             // it passes the whole load on its way
             let share = left / (path.factor - factor);
             let beyond = self.distance(from);
-            for axis in 0..from.len() {
-                let w = &mut self.space.w[axis];
-                *w = from[axis] + share * (*w - from[axis]);
-            }
+            update(&mut self.space.correction, |axis, w| from.get(axis) + share * (w - from.get(axis)));
             path.factor = 1.0;
             let more = self.correct(path, Constraint::Factor(1.0), from)?;
             if self.distance(from) > beyond {
@@ -169,16 +165,20 @@ impl Newton<'_, '_> {
     }
 
     /// How far free axes are from others (m), a norm.
-    fn distance(&self, from: &[f64]) -> f64 {
-        let part = |axis: usize| if self.motion.free[axis] { self.space.w[axis] - from[axis] } else { 0.0 };
-        (0..from.len()).map(|axis| part(axis).powi(2)).sum::<f64>().sqrt()
+    fn distance(&self, from: &Reals) -> f64 {
+        (0..from.len()).map(|axis| self.went(axis, from).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// How far an axis has gone from there (m); 0 where it is not free.
+    fn went(&self, axis: usize, from: &Reals) -> f64 {
+        if self.motion.free[axis] { self.space.correction.get(axis) - from.get(axis) } else { 0.0 }
     }
 
     /// Newton's iterations under a constraint, from w and a factor, of a step that began elsewhere.
-    fn correct(&mut self, path: &mut Follower, constraint: Constraint, from: &[f64]) -> Result<u64, Lost> {
+    fn correct(&mut self, path: &mut Follower, constraint: Constraint, from: &Reals) -> Result<u64, Lost> {
         let mut floor = 0.0;
         for iteration in 0..=MOST_ITERATIONS {
-            self.place(path)?;
+            self.put(path)?;
             let tried = self.forces_at_w()?;
             if !tried.sound || !path.factor.is_finite() {
                 break;
@@ -194,11 +194,9 @@ impl Newton<'_, '_> {
             if iteration == MOST_ITERATIONS || !size.is_finite() {
                 break;
             }
-            let right: Vec<f64> = self.space.g.iter().map(|g| -g).collect();
-            let mut of_residual = std::mem::take(&mut path.of_residual);
-            let solved = self.minimal_residual(&right, &mut of_residual, &mut path.vectors);
-            path.of_residual = of_residual;
-            solved?;
+            let mut right = self.space.residual.clone();
+            update(&mut right, |_, g| -g);
+            self.minimal_residual(&right, &mut path.of_residual, &mut path.vectors)?;
             let by = match constraint {
                 Constraint::Factor(factor) => factor - path.factor,
                 Constraint::Length(length) => {
@@ -207,7 +205,8 @@ impl Newton<'_, '_> {
                 }
             };
             for axis in (0..from.len()).filter(|&axis| self.motion.free[axis]) {
-                self.space.w[axis] += path.of_residual[axis] + by * path.of_factor[axis];
+                let by = path.of_residual.get(axis) + by * path.of_factor.get(axis);
+                self.space.correction.set(axis, self.space.correction.get(axis) + by);
             }
             path.factor += by;
             self.report.newton_iterations += 1;
@@ -216,16 +215,16 @@ impl Newton<'_, '_> {
     }
 
     /// δℓ of the equation of length, ‖Δu + p_g + δℓ p_ℓ‖ = Δs: the root whose way turns less from that so far.
-    fn least_turn(&self, path: &Follower, from: &[f64], length: f64) -> Result<f64, Lost> {
+    fn least_turn(&self, path: &Follower, from: &Reals, length: f64) -> Result<f64, Lost> {
         let (p, q) = (&path.of_factor, &path.of_residual);
         let (mut a, mut b, mut c, mut along) = (0.0, 0.0, -length * length, 0.0);
         for axis in (0..from.len()).filter(|&axis| self.motion.free[axis]) {
-            let so_far = self.space.w[axis] - from[axis];
-            let after = so_far + q[axis];
-            a += p[axis] * p[axis];
-            b += p[axis] * after;
+            let (so_far, p) = (self.went(axis, from), p.get(axis));
+            let after = so_far + q.get(axis);
+            a += p * p;
+            b += p * after;
             c += after * after;
-            along += so_far * p[axis];
+            along += so_far * p;
         }
         let root = (b * b - a * c).sqrt();
         // what is no number is no root
@@ -236,62 +235,64 @@ impl Newton<'_, '_> {
     }
 
     /// Puts held axes where they are at the factor, and loads with them.
-    fn place(&mut self, path: &Follower) -> Result<(), Error> {
-        let w = &self.space.w;
-        self.trial.axes.displace(self.trial.world, w);
+    fn put(&mut self, path: &Follower) -> Result<(), Error> {
+        let Self { trial, settings, h, motion, space, .. } = self;
+        let correction = &space.correction;
+        let place = Place { formula: &settings.formula, h: *h, motion, correction, beyond: None };
+        place.displace(trial.axes, trial.world);
         self.trial.world.resource_mut::<Signals>().approach(path.end, [path.factor; 2]);
         self.trial.boundary()?;
-        held_axes(self.trial.world, self.trial.axes, self.motion, &mut self.space.to_go);
-        let super::Workspace { w, to_go, .. } = &mut *self.space;
-        w.iter_mut().zip(&mut *to_go).for_each(|(w, left)| *w += std::mem::take(left));
+        let super::Workspace { correction, to_go, .. } = &mut *self.space;
+        held_axes(self.trial.world, self.trial.axes, self.motion, to_go);
+        if !to_go.is_empty() {
+            combine(correction, to_go, |w, left| w + left);
+            clear(to_go);
+        }
         Ok(())
     }
 
     /// −∂g/∂ℓ, loads and the motion of held axes together, and p_ℓ with it. The forces at w must be known.
     fn find_slope(&mut self, path: &mut Follower) -> Result<(), Lost> {
-        let (here, factor) = (self.space.w.clone(), path.factor);
+        let (here, factor) = (self.space.correction.clone(), path.factor);
         let by = DIFFERENCE[usize::from(self.is_f64())];
         path.factor += by;
-        self.place(path)?;
-        let super::Workspace { w, elsewhere, net, .. } = &mut *self.space;
-        self.trial.forces(w, None, elsewhere)?;
-        for axis in 0..here.len() {
-            path.slope[axis] = if self.motion.free[axis] { (net[axis] - elsewhere[axis]) / by } else { 0.0 };
-        }
-        self.space.w.copy_from_slice(&here);
+        self.put(path)?;
+        let Self { trial, settings, h, motion, space, .. } = self;
+        let super::Workspace { correction, net, .. } = &mut **space;
+        let place = Place { formula: &settings.formula, h: *h, motion, correction, beyond: None };
+        trial.forces(&place, &mut path.slope)?;
+        let free = |axis: usize| motion.free[axis];
+        update(&mut path.slope, |axis, there| if free(axis) { (net.get(axis) - there) / by } else { 0.0 });
+        copy(&mut space.correction, &here);
         path.factor = factor;
-        self.place(path)?;
-        let (slope, mut of_factor) = (std::mem::take(&mut path.slope), std::mem::take(&mut path.of_factor));
-        let solved = self.minimal_residual(&slope, &mut of_factor, &mut path.vectors);
-        (path.slope, path.of_factor) = (slope, of_factor);
-        solved.map(|_| ())
+        self.put(path)?;
+        let Follower { slope, of_factor, vectors, .. } = path;
+        self.minimal_residual(slope, of_factor, vectors).map(|_| ())
     }
 
     /// Whether bodies do not resist some motion at w. The forces there must be known.
     fn gives_way_along(&mut self, path: &mut Follower) -> Result<bool, Lost> {
-        let signs = self.signs();
-        let mut image = std::mem::take(&mut path.of_residual);
-        let solved = self.minimal_residual(&signs, &mut image, &mut path.vectors);
-        path.of_residual = image;
-        Ok(solved?.gives_way)
+        let mut signs = self.trial.axes.zeros();
+        fill_with_signs(&mut signs, &self.motion.free);
+        Ok(self.minimal_residual(&signs, &mut path.of_residual, &mut path.vectors)?.gives_way)
     }
 
     /// x ≈ K⁻¹ b on free axes. The forces at w must be known.
-    fn minimal_residual(&mut self, b: &[f64], x: &mut [f64], vectors: &mut Vectors) -> Result<minres::Solved, Lost> {
+    fn minimal_residual(&mut self, b: &Reals, x: &mut Reals, vectors: &mut Vectors) -> Result<minres::Solved, Lost> {
         self.follow();
         let Self { trial, settings, motion, space, preconditioner, report, sums, h, .. } = self;
-        let super::Workspace { w, net, elsewhere, steps, .. } = &mut **space;
-        let of_step = (&settings.formula, *h, *motion);
-        let times = |x: &[f64], image: &mut [f64]| -> Result<(), Error> {
-            difference(trial, of_step, (w, net), elsewhere, steps, x, image)?;
-            image.iter_mut().zip(&motion.free).filter(|(_, free)| !**free).for_each(|(image, _)| *image = 0.0);
+        let super::Workspace { correction, net, .. } = &**space;
+        let place = Place { formula: &settings.formula, h: *h, motion, correction, beyond: None };
+        let times = |x: &Reals, image: &mut Reals| -> Result<(), Error> {
+            difference(trial, &place, net, x, image)?;
+            update(image, |axis, force| if motion.free[axis] { force } else { 0.0 });
             Ok(())
         };
         let stop = Stop { tolerance: LEFT, most: MOST_PRODUCTS };
         let solved = minres::solve(sums, b, x, vectors, &mut **preconditioner, stop, times)?;
         report.linear_iterations += solved.iterations;
         report.negative_curvatures += u64::from(solved.gives_way);
-        match x.iter().all(|x| x.is_finite()) {
+        match (0..x.len()).all(|axis| x.get(axis).is_finite()) {
             true => Ok(solved),
             false => Err(Lost::Because("forces near the present state are no numbers".into())),
         }

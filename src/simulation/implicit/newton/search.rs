@@ -1,6 +1,8 @@
 //! The line search: how far Newton's iterations go along a direction.
 
+use super::super::conjugate_gradients::Vectors;
 use super::super::trial::Tried;
+use super::super::vectors::{combine, copy, update};
 use super::{DESCENT, Lost, Newton, Way, Workspace};
 use crate::components::Clock;
 
@@ -70,8 +72,9 @@ impl Newton<'_, '_> {
     /// Goes along p as far as the residual does less work along it, and where bodies give way along it as far as it
     /// leads downhill. `size` becomes the norm of the new residual.
     pub(super) fn search(&mut self, way: Way, size: &mut f64, enough: f64) -> Result<Tried, Lost> {
-        self.space.elsewhere.copy_from_slice(&self.space.w);
-        let begins = self.sums.dot(&self.space.p, &self.space.g);
+        copy(&mut self.space.vectors.image, &self.space.correction);
+        self.residual();
+        let begins = self.sums.dot(&self.space.p, &self.space.residual);
         let touches = self.trial.world.resource::<Clock>().springs.is_some();
         let moves = self.moves();
         let ends = self.longest();
@@ -81,23 +84,25 @@ impl Newton<'_, '_> {
                 break;
             }
             halvings = look;
-            let Workspace { w, elsewhere: from, p, to_go, .. } = &mut *self.space;
-            for axis in 0..w.len() {
-                let left = to_go.get(axis).copied().unwrap_or(0.0);
-                w[axis] = from[axis] + share * (p[axis] + left);
+            let Workspace { correction, p, to_go, vectors: Vectors { image: from, .. }, .. } = &mut *self.space;
+            copy(correction, from);
+            combine(correction, p, |from, p| from + share * p);
+            // where held axes go p is 0
+            if !to_go.is_empty() {
+                combine(correction, to_go, |from, left| from + share * left);
             }
             let tried = self.forces_at_w()?;
             let mut work = f64::NAN;
             self.beyond |= !tried.sound;
             if tried.sound {
                 let now = self.residual();
-                work = self.sums.dot(&self.space.p, &self.space.g);
+                work = self.sums.dot(&self.space.p, &self.space.residual);
                 let descends = self.descends(&way, (share, work), touches.then_some(&bracket));
                 // of what is moved as told the work may be of either sign, and what slides is rubbed by what presses
                 // it, of which a symmetric tangent does not know: it leads there where less is left
                 let arrives = touches && now <= if moves { DESCENT } else { FALLS } * *size;
                 if now.is_finite() && (descends || arrives || self.settings.newton == 1 || now <= enough) {
-                    self.space.to_go.iter_mut().for_each(|left| *left *= 1.0 - share);
+                    update(&mut self.space.to_go, |_, left| left * (1.0 - share));
                     *size = now;
                     return Ok(tried);
                 }
@@ -105,8 +110,8 @@ impl Newton<'_, '_> {
             self.report.halvings += 1;
             share = if touches { bracket.next(share, work) } else { 0.5 * share };
         }
-        let Workspace { w, elsewhere: from, .. } = &mut *self.space;
-        w.copy_from_slice(from);
+        let Workspace { correction, vectors, .. } = &mut *self.space;
+        copy(correction, &vectors.image);
         Err(Lost::Because(format!(
             "no descent after {halvings} halvings of a Newton step, at a residual of {size:.3e} N{}",
             self.what_is_beyond()
@@ -117,8 +122,8 @@ impl Newton<'_, '_> {
     fn longest(&self) -> f64 {
         let Some(farthest) = self.farthest else { return 1.0 };
         let Workspace { p, to_go, .. } = &*self.space;
-        let left = |axis: usize| to_go.get(axis).copied().unwrap_or(0.0);
-        let most = p.iter().enumerate().map(|(axis, p)| (p + left(axis)).abs()).fold(0.0, f64::max);
+        let left = |axis: usize| if to_go.is_empty() { 0.0 } else { to_go.get(axis) };
+        let most = (0..p.len()).map(|axis| (p.get(axis) + left(axis)).abs()).fold(0.0, f64::max);
         if most > farthest { farthest / most } else { 1.0 }
     }
 

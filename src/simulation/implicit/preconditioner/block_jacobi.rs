@@ -1,16 +1,19 @@
 //! The 3×3 block of each node, of all elements at rest.
 
+use super::super::vectors::{copy, none, with_numbers};
 use super::columns::{Columns, each_column, elements_left};
 use super::{Operator, Preconditioner};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
+use crate::math::Scalar;
 use glam::{DMat3, DVec3};
 use std::collections::BTreeMap;
 
 /// B = the inverses of the diagonal blocks of D + c K, K that of bodies at rest: found once, and again when some
 /// elements have gone; and of the springs that touch.
-#[derive(Default)]
 pub(in crate::simulation) struct BlockJacobi {
+    /// The numbers of vectors.
+    pub precision: Precision,
     /// Diagonal blocks of K (N/m), a node each; and while they are added up, in all digits.
     stiffness: Blocks,
     sums: Vec<DMat3>,
@@ -19,7 +22,7 @@ pub(in crate::simulation) struct BlockJacobi {
     /// Inverses of the blocks (m/N), as their nodes have turned.
     inverses: Blocks,
     /// What the inverses were made of.
-    pub inertia: Vec<f64>,
+    pub inertia: Reals,
     pub free: Vec<bool>,
     share: f64,
     /// What springs add to the blocks of nodes that they act on (N/m).
@@ -79,16 +82,20 @@ impl Blocks {
         }
     }
 
-    /// z = B r.
-    fn apply(&self, residual: &[f64], z: &mut [f64]) {
-        let nodes = residual.as_chunks::<3>().0.iter().zip(z.as_chunks_mut::<3>().0);
-        match self {
-            Self::F32(blocks) => {
-                nodes.zip(blocks).for_each(|((r, z), block)| *z = (widened(block) * DVec3::from(*r)).into());
+    /// Makes z = B r of r.
+    fn apply(&self, z: &mut Reals) {
+        with_numbers!(z, T => {
+            let nodes = z.slice_mut::<T>().as_chunks_mut::<3>().0.iter_mut();
+            match self {
+                Self::F32(blocks) => nodes.zip(blocks).for_each(|(z, block)| *z = times(widened(block), *z)),
+                Self::F64(blocks) => nodes.zip(blocks).for_each(|(z, block)| *z = times(*block, *z)),
             }
-            Self::F64(blocks) => nodes.zip(blocks).for_each(|((r, z), block)| *z = (*block * DVec3::from(*r)).into()),
-        }
+        });
     }
+}
+
+fn times<T: Scalar>(block: DMat3, r: [T; 3]) -> [T; 3] {
+    (block * DVec3::from(r.map(T::to_f64))).to_array().map(T::from_f64)
 }
 
 fn widened(block: &[f32; 6]) -> DMat3 {
@@ -109,8 +116,9 @@ pub(super) enum Changed {
 }
 
 impl Preconditioner for BlockJacobi {
-    fn apply(&mut self, _: &Cpu, residual: &[f64], z: &mut [f64]) {
-        self.apply_to(residual, z);
+    fn apply(&mut self, _: &Cpu, residual: &Reals, z: &mut Reals) {
+        copy(z, residual);
+        self.apply_to(z);
     }
 
     fn follow(&mut self, operator: &Operator<'_>) {
@@ -128,15 +136,30 @@ impl Preconditioner for BlockJacobi {
 
     fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
         let of_nodes = self.stiffness.bytes() + self.inverses.bytes();
-        let of_axes = size_of_val(&self.inertia[..]) + size_of_val(&self.free[..]);
+        let of_axes = self.inertia.bytes().len() + size_of_val(&self.free[..]);
         ("the 3×3 blocks of nodes".into(), vec![("blocks of nodes", (of_nodes + of_axes) as u64)])
     }
 }
 
 impl BlockJacobi {
-    /// z = B r.
-    pub fn apply_to(&self, residual: &[f64], z: &mut [f64]) {
-        self.inverses.apply(residual, z);
+    /// None yet, for vectors of some numbers.
+    pub fn of(precision: Precision) -> Self {
+        Self {
+            precision,
+            stiffness: Blocks::default(),
+            sums: Vec::new(),
+            elements: 0,
+            inverses: Blocks::default(),
+            inertia: none(precision),
+            free: Vec::new(),
+            share: 0.0,
+            springs: BTreeMap::new(),
+        }
+    }
+
+    /// Makes z = B r of r.
+    pub fn apply_to(&self, z: &mut Reals) {
+        self.inverses.apply(z);
     }
 
     /// What of an operator is another than it was.
@@ -147,7 +170,9 @@ impl BlockJacobi {
             Changed::Bodies
         } else if self.free != operator.free {
             Changed::Axes
-        } else if self.share != operator.stiffness || self.inertia != operator.inertia {
+        } else if self.share != operator.stiffness
+            || self.inertia != Reals::from_f64(self.precision, operator.inertia.all())
+        {
             Changed::Shares
         } else {
             Changed::Nothing
@@ -172,18 +197,17 @@ impl BlockJacobi {
     /// Follows an operator of which this has changed, and the springs that touch.
     pub fn take(&mut self, operator: &Operator<'_>, changed: Changed) {
         if !self.sums.is_empty() {
-            self.stiffness = Blocks::zeros(operator.precision(), self.sums.len());
+            self.stiffness = Blocks::zeros(self.precision, self.sums.len());
             let sums = std::mem::take(&mut self.sums).into_iter().enumerate();
             sums.for_each(|(node, sum)| self.stiffness.set(node, sum));
         }
         if changed != Changed::Nothing {
             self.share = operator.stiffness;
-            self.inertia.clear();
-            self.inertia.extend_from_slice(operator.inertia);
+            self.inertia = Reals::from_f64(self.precision, operator.inertia.all());
             self.free.clear();
             self.free.extend_from_slice(operator.free);
             self.springs.clear();
-            self.inverses = Blocks::zeros(operator.precision(), self.stiffness.len());
+            self.inverses = Blocks::zeros(self.precision, self.stiffness.len());
             (0..self.stiffness.len()).for_each(|node| self.turn(node, DMat3::IDENTITY));
         }
         let before = std::mem::replace(&mut self.springs, blocks_of_springs(operator));
@@ -218,7 +242,7 @@ impl BlockJacobi {
         let is_turned = rotation != DMat3::IDENTITY;
         let stiffness = if is_turned { rotation * at_rest * rotation.transpose() } else { at_rest };
         let springs = self.springs.get(&node).copied().unwrap_or(DMat3::ZERO);
-        inverse(stiffness * self.share + springs, self.inertia[node], &self.free[axes])
+        inverse(stiffness * self.share + springs, self.inertia.get(node), &self.free[axes])
     }
 }
 

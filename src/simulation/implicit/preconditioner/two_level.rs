@@ -8,6 +8,7 @@ mod coarse;
 mod rotation;
 mod touched;
 
+use super::super::vectors::copy;
 use super::block_jacobi::{BlockJacobi, Changed};
 use super::columns::{each_column, pieces};
 use super::{Operator, Preconditioner, SpringSlope};
@@ -29,7 +30,6 @@ use touched::{MOST_TOUCHED, Touched};
 /// Of a piece that nothing holds along an axis, what it does as a whole is solved apart from that: B t = t tᵀ r / tᵀ D
 /// t along its translation t, and the rest of B without a mean motion. So it keeps its linear momentum however early a
 /// solve ends, as [`Mass`](super::Mass) does. Where a spring holds it to something that is no piece it does not.
-#[derive(Default)]
 pub(in crate::simulation) struct TwoLevel {
     fine: BlockJacobi,
     pieces: Vec<Piece>,
@@ -41,8 +41,6 @@ pub(in crate::simulation) struct TwoLevel {
     turned: bool,
     /// How often matrices have been made.
     made: u64,
-    /// The residual without what moves pieces as a whole (N); empty where all of them are held.
-    residual: Vec<f64>,
 }
 
 struct Piece {
@@ -57,20 +55,18 @@ struct Piece {
 }
 
 impl Preconditioner for TwoLevel {
-    fn apply(&mut self, cpu: &Cpu, residual: &[f64], z: &mut [f64]) {
+    fn apply(&mut self, cpu: &Cpu, residual: &Reals, z: &mut Reals) {
+        copy(z, residual);
         let inertia = &self.fine.inertia;
-        let (mut wholes, mut residual) = (Vec::new(), residual);
+        let mut wholes = Vec::new();
         if self.pieces.iter().any(Piece::moves) {
-            self.residual.clear();
-            self.residual.extend_from_slice(residual);
-            wholes.extend(self.pieces.iter().map(|piece| piece.whole(inertia, &mut self.residual)));
-            residual = &self.residual;
+            wholes.extend(self.pieces.iter().map(|piece| piece.whole(inertia, z)));
         }
-        self.fine.apply_to(residual, z);
         for piece in &mut self.pieces {
             let own = piece.first..piece.first + piece.coarse.size();
-            piece.coarse.solve(cpu, residual, &mut self.motions[own]);
+            piece.coarse.solve(cpu, z, &mut self.motions[own]);
         }
+        self.fine.apply_to(z);
         self.touched.correct(&mut self.motions);
         for (number, piece) in self.pieces.iter().enumerate() {
             piece.coarse.carry(&self.motions[piece.first..], &self.fine.free, z);
@@ -117,16 +113,13 @@ impl Preconditioner for TwoLevel {
         self.made
     }
 
-    fn settle(&self, right: &[f64], x: &mut [f64]) {
+    fn settle(&self, right: &Reals, x: &mut Reals) {
         self.pieces.iter().for_each(|piece| piece.settle(&self.fine.inertia, right, x));
     }
 
     fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
         let (blocks, mut held) = self.fine.holds();
-        let places = size_of_val(&self.places[..])
-            + size_of_val(&self.residual[..])
-            + size_of_val(&self.motions[..])
-            + self.touched.bytes();
+        let places = size_of_val(&self.places[..]) + size_of_val(&self.motions[..]) + self.touched.bytes();
         let of_pieces = self.pieces.iter().map(|piece| piece.coarse.bytes());
         let aggregates: usize = self.pieces.iter().map(|piece| piece.coarse.size() / RIGID).sum();
         let matrices: usize = self.pieces.iter().map(|piece| piece.coarse.bytes_of_matrix()).sum();
@@ -143,10 +136,23 @@ impl TwoLevel {
         self.turned
     }
 
+    /// None yet, for vectors of some numbers.
+    pub fn of(numbers: Precision) -> Self {
+        Self {
+            fine: BlockJacobi::of(numbers),
+            pieces: Vec::new(),
+            places: Vec::new(),
+            touched: Touched::default(),
+            motions: Vec::new(),
+            turned: false,
+            made: 0,
+        }
+    }
+
     /// Takes the springs that touch, with aggregates as they have turned: Pᵀ of them P.
     fn touch(&mut self, operator: &Operator<'_>) {
         let place = |first: usize| self.places[first / 3].map(|place| place.map(|number| number as usize));
-        let at_rest = operator.inertia.iter().all(|&inertia| inertia == 0.0);
+        let at_rest = operator.inertia.all().all(|inertia| inertia == 0.0);
         let is_of_one = |spring: &&SpringSlope<'_>| {
             let mut pieces = spring.parts.iter().filter_map(|&(first, _)| Some(place(first)?[0]));
             let one = pieces.next();
@@ -237,44 +243,43 @@ impl Piece {
     }
 
     /// Takes out of a residual what moves the piece as a whole, r − D t (tᵀ r/tᵀ D t); gives that motion (m).
-    fn whole(&self, inertia: &[f64], residual: &mut [f64]) -> DVec3 {
+    fn whole(&self, inertia: &Reals, residual: &mut Reals) -> DVec3 {
         let per_inertia = self.per_inertia();
         if per_inertia == DVec3::ZERO {
             return DVec3::ZERO;
         }
-        let force: DVec3 = self.each_node().map(|node| DVec3::from_slice(&residual[3 * node..])).sum();
+        let force: DVec3 = self.each_node().map(|node| residual.vector(node)).sum();
         let motion = force * per_inertia;
         for node in self.each_node() {
-            (0..3).for_each(|i| residual[3 * node + i] -= inertia[node] * motion[i]);
+            residual.set_vector(node, residual.vector(node) - inertia.get(node) * motion);
         }
         motion
     }
 
     /// Adds a motion of the whole to x (m) such that tᵀ (b − D x) = 0 along each axis that nothing holds: elements do
     /// not resist it, so that D alone is there of the operator.
-    fn settle(&self, inertia: &[f64], right: &[f64], x: &mut [f64]) {
+    fn settle(&self, inertia: &Reals, right: &Reals, x: &mut Reals) {
         let per_inertia = self.per_inertia();
         if per_inertia == DVec3::ZERO {
             return;
         }
-        let left = |axis: usize| right[axis] - inertia[axis / 3] * x[axis];
-        let sum = |i: usize| -> f64 { self.each_node().map(|node| left(3 * node + i)).sum() };
-        let motion = DVec3::new(sum(0), sum(1), sum(2)) * per_inertia;
+        let left = |node: usize| right.vector(node) - inertia.get(node) * x.vector(node);
+        let motion = self.each_node().map(left).sum::<DVec3>() * per_inertia;
         for node in self.each_node() {
-            (0..3).for_each(|i| x[3 * node + i] += motion[i]);
+            x.set_vector(node, x.vector(node) + motion);
         }
     }
 
     /// Puts a motion (m) in the place of the mean one in z.
-    fn move_as_a_whole(&self, inertia: &[f64], motion: DVec3, z: &mut [f64]) {
+    fn move_as_a_whole(&self, inertia: &Reals, motion: DVec3, z: &mut Reals) {
         let per_inertia = self.per_inertia();
         if per_inertia == DVec3::ZERO {
             return;
         }
-        let weighted = |node: usize| DVec3::from_slice(&z[3 * node..]) * inertia[node];
+        let weighted = |node: usize| z.vector(node) * inertia.get(node);
         let mean = self.each_node().map(weighted).sum::<DVec3>() * per_inertia;
         for node in self.each_node() {
-            (0..3).for_each(|i| z[3 * node + i] += motion[i] - mean[i]);
+            z.set_vector(node, z.vector(node) + (motion - mean));
         }
     }
 }
@@ -286,7 +291,7 @@ fn find_pieces(operator: &Operator<'_>, fine: &mut BlockJacobi) -> Vec<Piece> {
         let Some(rest) = operator.world.get::<RestPosition>(body) else { continue };
         for nodes in pieces(operator.world, body) {
             let nodes: Vec<(usize, DVec3)> = nodes.into_iter().map(|node| (first + node, rest.0[node])).collect();
-            let coarse = Coarse::of(&nodes, operator);
+            let coarse = Coarse::of(&nodes, operator, fine.precision);
             let end = unknowns + coarse.size();
             all.push(Piece { body, first_node: first, coarse, first: unknowns, is_held: false });
             unknowns = end;

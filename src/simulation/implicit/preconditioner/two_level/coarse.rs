@@ -5,7 +5,7 @@ use super::aggregates::{Aggregates, RIGID, motions};
 use super::cholesky::Cholesky;
 use super::rotation::{angle, rotation};
 use crate::backend::cpu::Cpu;
-use crate::components::Reals;
+use crate::components::{Precision, Reals};
 use glam::{DMat3, DVec3};
 
 /// Nodes of an aggregate at most, as long as a piece has no more aggregates than that: the matrix is dense.
@@ -43,7 +43,7 @@ pub(super) fn start(column: usize, size: usize) -> usize {
 
 impl Coarse {
     /// Of the nodes of a piece, with their rest positions (m); without its stiffness.
-    pub fn of(piece: &[(usize, DVec3)], operator: &Operator<'_>) -> Self {
+    pub fn of(piece: &[(usize, DVec3)], operator: &Operator<'_>, precision: Precision) -> Self {
         let moves = |node: usize| operator.free[3 * node..3 * node + 3].contains(&true);
         let (nodes, rest): (Vec<usize>, Vec<DVec3>) = piece.iter().filter(|(node, _)| moves(*node)).copied().unzip();
         let most = NODES_AN_AGGREGATE.max(nodes.len().div_ceil(MOST_AGGREGATES));
@@ -51,7 +51,7 @@ impl Coarse {
         let order = aggregates.sort();
         let nodes = order.iter().map(|&own| nodes[own] as u32).collect();
         let arms = std::mem::take(&mut aggregates.arm).into_iter().flat_map(|arm| arm.to_array());
-        let arms = Reals::from_f64(operator.precision(), arms);
+        let arms = Reals::from_f64(precision, arms);
         let all_free = [0, 1, 2].map(|axis| piece.iter().all(|(node, _)| operator.free[3 * node + axis]));
         let size = RIGID * aggregates.count();
         let mut new = Self {
@@ -70,7 +70,7 @@ impl Coarse {
 
     /// How much inertia there is along axes that nothing holds.
     fn find_inertia(&mut self, operator: &Operator<'_>) {
-        let sum: f64 = self.nodes.iter().map(|&node| operator.inertia[node as usize]).sum();
+        let sum: f64 = self.nodes.iter().map(|&node| operator.inertia.of(node as usize)).sum();
         let per_inertia = if sum > 0.0 { 1.0 / sum } else { 0.0 };
         self.per_inertia = DVec3::from_array(self.all_free.map(|all_free| if all_free { per_inertia } else { 0.0 }));
     }
@@ -85,7 +85,7 @@ impl Coarse {
             let first = RIGID * aggregate;
             for axis in (0..3).filter(|axis| operator.free[3 * node + axis]) {
                 let motion = motions(arm, axis);
-                let inertia = operator.inertia[node];
+                let inertia = operator.inertia.of(node);
                 for (i, j) in (0..RIGID).flat_map(|i| (0..=i).map(move |j| (i, j))) {
                     matrix[place(first + i, first + j)] += inertia * motion[i] * motion[j];
                 }
@@ -184,13 +184,13 @@ impl Coarse {
     }
 
     /// A⁻¹ Pᵀ r, of a residual r (N).
-    pub fn solve(&mut self, cpu: &Cpu, residual: &[f64], motions: &mut [f64]) {
+    pub fn solve(&mut self, cpu: &Cpu, residual: &Reals, motions: &mut [f64]) {
         let of_aggregates = self.rotations.iter().zip(&self.aggregates.ranges);
         for (sums, (rotation, range)) in motions.chunks_exact_mut(RIGID).zip(of_aggregates) {
             let (mut force, mut turn) = (DVec3::ZERO, DVec3::ZERO);
             let is_turned = *rotation != DMat3::IDENTITY;
             for own in range.clone() {
-                let r = DVec3::from_slice(&residual[3 * self.nodes[own] as usize..]);
+                let r = residual.vector(self.nodes[own] as usize);
                 let arm = self.arms.vector(own);
                 force += r;
                 turn += if is_turned { *rotation * arm } else { arm }.cross(r);
@@ -202,7 +202,7 @@ impl Coarse {
     }
 
     /// Moves nodes on free axes of z with the motions of their aggregates.
-    pub fn carry(&self, motions: &[f64], free: &[bool], z: &mut [f64]) {
+    pub fn carry(&self, motions: &[f64], free: &[bool], z: &mut Reals) {
         let of_aggregates = self.rotations.iter().zip(&self.aggregates.ranges);
         for (motion, (rotation, range)) in motions.chunks_exact(RIGID).zip(of_aggregates) {
             let (moved, turned) = (*rotation * DVec3::from_slice(motion), *rotation * DVec3::from_slice(&motion[3..]));
@@ -210,10 +210,8 @@ impl Coarse {
             for own in range.clone() {
                 let (node, arm) = (self.nodes[own] as usize, self.arms.vector(own));
                 let step = (moved + turned.cross(if is_turned { *rotation * arm } else { arm })).to_array();
-                let (z, free) = (&mut z[3 * node..3 * node + 3], &free[3 * node..3 * node + 3]);
-                for i in 0..3 {
-                    z[i] += if free[i] { step[i] } else { 0.0 };
-                }
+                let step: [f64; 3] = std::array::from_fn(|i| if free[3 * node + i] { step[i] } else { 0.0 });
+                z.set_vector(node, z.vector(node) + DVec3::from(step));
             }
         }
     }
