@@ -9,7 +9,7 @@ use super::ScheduledPass;
 use super::Simulation;
 use super::explain::SolverInUse;
 use super::frequency::largest_eigenvalue;
-use super::implicit::{Attempt, ImplicitSteps, OfForces, PathPoint, Rest, Statics};
+use super::implicit::{Attempt, ImplicitSteps, OfForces, PathPoint, Rest, Statics, warn_of_instability};
 use super::residual::{Motion, Residual, State};
 use super::stretch::least_stretch;
 use crate::backend::device::{bring_to_host, send_to_device};
@@ -262,9 +262,12 @@ impl Relaxing {
         if share >= 1.0 && (arrived || is_near) {
             self.try_newton(world, passes)?;
         }
-        if arrived || self.equilibrium.reached {
-            self.equilibrium.reached = true;
+        if self.equilibrium.reached {
             return Ok(());
+        }
+        if arrived {
+            self.equilibrium.reached = true;
+            return self.ask_whether_it_lasts(world, passes);
         }
         let found = &self.equilibrium;
         // a body that collapses is on its way to another rest: forces grow before they fall
@@ -293,6 +296,17 @@ impl Relaxing {
                 Err(self.given_up(world.resource::<Clock>().step))
             }
         }
+    }
+
+    /// Asks where pseudo-steps have arrived, and Newton's iterations have not, whether bodies give way there: what is
+    /// symmetric is at rest beyond the load at which it buckles, too.
+    fn ask_whether_it_lasts(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<(), Error> {
+        let Some(newton) = &mut self.newton else { return Ok(()) };
+        self.equilibrium.unstable = newton.statics.gives_way(world, passes)?;
+        if self.equilibrium.unstable {
+            warn_of_instability(world);
+        }
+        Ok(())
     }
 
     /// Takes over what Newton's iterations have found.
@@ -370,23 +384,4 @@ impl Relaxing {
             at_start: false,
         }))
     }
-}
-
-/// That what was found does not last.
-fn warn_of_instability(world: &mut World) {
-    let clock = *world.resource::<Clock>();
-    let Some(mut memory) = world.get_resource_mut::<GuardMemory>() else { return };
-    memory.warnings.push(Notice {
-        criterion: "equilibrium".into(),
-        part: String::new(),
-        time: clock.time(),
-        step: clock.step,
-        value: 0.0,
-        limit: 0.0,
-        message:
-            "the equilibrium does not last: there is a motion that bodies do not resist but give way to, as a column \
-                  that is about to buckle. What is small and breaks the symmetry, a load across or a motion in time, \
-                  leads to the one that lasts"
-                .into(),
-    });
 }

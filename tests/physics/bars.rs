@@ -8,7 +8,8 @@
 //! lateral motion held: σ = −ρ c v = −33.7332 Pa, at the other end after L/c = .0296444 s.
 
 use crate::columns::{masses, velocities};
-use crate::configurations::{configurations, cpu_and_long_gpu, near, with_elements};
+use crate::configurations::{configurations, cpu_and_long_gpu, near};
+use crate::element_turns::with_elements;
 use sinew::Simulation;
 use std::f64::consts::PI;
 

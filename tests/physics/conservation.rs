@@ -6,7 +6,8 @@
 //! term.
 
 use crate::columns::{masses, positions, velocities};
-use crate::configurations::{configurations, cpu_and_long_gpu, near, with_elements};
+use crate::configurations::{configurations, cpu_and_long_gpu, near};
+use crate::element_turns::with_elements;
 use glam::DVec3;
 use sinew::Simulation;
 

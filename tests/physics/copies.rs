@@ -1,7 +1,8 @@
 //! Copies of a body go their own ways: each as the body would by itself under its own load and with its own material,
 //! to the rounding of sums in another order (1e-11 of the largest displacement in f64, 1e-4 in f32, after 300 steps).
 
-use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, with_elements};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu};
+use crate::element_turns::with_elements;
 use glam::DVec3;
 use sinew::{Error, Simulation};
 

@@ -1,7 +1,8 @@
 //! The guards: samples see what energies and fields say, limits end a run and warn, and nothing that is no number is
 //! found late or written.
 
-use crate::configurations::{configurations, cpu_and_long_gpu, scene_of, with_elements};
+use crate::configurations::{configurations, cpu_and_long_gpu, scene_of};
+use crate::element_turns::with_elements;
 use sinew::bevy_ecs::prelude::*;
 use sinew::components::*;
 use sinew::observation::{HOST_GUARD_STEPS, sample};

@@ -4,7 +4,8 @@
 //! A cube of .1 m, damped at 40/s: its slowest motion, of some 15 rad/s, dies in a second to 1e-6 of itself. What is
 //! farther than 1e-3 of the cube from its place after that is held there by a false equilibrium.
 
-use crate::configurations::{configurations, cpu_and_long_gpu, near, with_elements};
+use crate::configurations::{configurations, cpu_and_long_gpu, near};
+use crate::element_turns::with_elements;
 
 const SIZE: f64 = 0.1;
 

@@ -2,7 +2,8 @@
 //!
 //! Volumes are whole cells of 1 m³, masses 1000 kg each: both to 1e-9 (f64) and 1e-4 (f32).
 
-use crate::configurations::{ELEMENTS, configurations, cpu_and_long_gpu, near, scene_of, with_elements};
+use crate::configurations::{ELEMENTS, configurations, cpu_and_long_gpu, near, scene_of};
+use crate::element_turns::with_elements;
 use glam::DVec3;
 use sinew::components::DisplacementIncrement;
 use sinew::{Options, Simulation};

@@ -4,7 +4,8 @@
 //! Bounds: sums of 50 to 100 terms: 1e-13 in f64, 1e-5 in f32 of the largest force.
 
 use crate::columns::{external_forces, positions};
-use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, with_elements};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu};
+use crate::element_turns::with_elements;
 use crate::random::{Random, rows};
 use glam::{DMat3, DVec3};
 use sinew::Simulation;

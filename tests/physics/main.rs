@@ -17,6 +17,7 @@ mod copies_differ;
 mod determinism;
 mod edge_frames;
 mod elastica;
+mod element_turns;
 mod elements;
 mod endings;
 mod energy_digits;

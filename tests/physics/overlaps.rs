@@ -1,6 +1,7 @@
 //! Bodies that are where others are: warned of once a pair, when and where; never of those that only touch.
 
-use crate::configurations::{configurations, with_elements};
+use crate::configurations::configurations;
+use crate::element_turns::with_elements;
 use sinew::components::Notice;
 use sinew::output::Folder;
 use sinew::{Options, SceneFile, Simulation};

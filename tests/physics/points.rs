@@ -6,7 +6,8 @@
 //! (what its nodes feel on a face of 1 m²), σ from the host's evaluation in f64. Bounds: figures are given to 1e-4 Pa,
 //! so 1e-7 of κ; f32 rounds E to 6e-8 of entries up to 3: 1e-5 of (κ + 2μ + 4η) = 2e4 Pa.
 
-use crate::configurations::{Configuration, ELEMENTS, configurations, near, with_elements};
+use crate::configurations::{Configuration, ELEMENTS, configurations, near};
+use crate::element_turns::with_elements;
 use sinew::Simulation;
 
 const MODULI: f64 = 2e4;

@@ -7,7 +7,8 @@
 //! the other side, the slowest motion's end twice as far as the mean. Its energy is the square of that: 1e-9 and 1e-7
 //! of the strain energy.
 
-use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, near, scene_of, with_elements};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, near, scene_of};
+use crate::element_turns::with_elements;
 use crate::grids::bits;
 use sinew::{Error, Simulation, Snapshot};
 use std::path::Path;

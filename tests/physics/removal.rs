@@ -5,7 +5,8 @@
 //! rounding (1e-10, 1e-4 in f32).
 
 use crate::columns::{external_forces, masses, velocities};
-use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, near, with_elements};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, near};
+use crate::element_turns::with_elements;
 use glam::DVec3;
 use sinew::Simulation;
 

@@ -8,7 +8,8 @@
 //! Tetrahedra weigh on nodes of one height differently (corners have 1 to 6 of them): within a cell's height h they sag
 //! by up to ρ g h²/(2M) = (h/L)² u = 2.5e-3 u more or less, which cancels over a layer but for second order: 1e-4 of u.
 
-use crate::configurations::{configurations, cpu_and_long_gpu, near, with_elements};
+use crate::configurations::{configurations, cpu_and_long_gpu, near};
+use crate::element_turns::with_elements;
 
 #[test]
 fn cantilever_bends_by_what_timoshenko_says() {

@@ -6,7 +6,8 @@
 //! damping stress is that of the last step, so the amplitude falls by √(1 − βω²Δt) a step, not e^(−βω²Δt/2): ξ is
 //! larger by a share βω²Δt/4 at most, 1e-3 here. Its stable step is Δt = (2/ω)(√(1 + ξ²) − ξ) for the largest ω.
 
-use crate::configurations::{Configuration, ELEMENTS, configurations, cpu_and_long_gpu, near, with_elements};
+use crate::configurations::{Configuration, ELEMENTS, configurations, cpu_and_long_gpu, near};
+use crate::element_turns::with_elements;
 use crate::grids::bits;
 use sinew::{Simulation, Snapshot};
 use std::f64::consts::PI;

@@ -1,6 +1,7 @@
 //! What viscosity does to the pressure: its own relaxation, and the false pressure of past stress.
 
-use crate::configurations::{Configuration, configurations, near, with_elements};
+use crate::configurations::{Configuration, configurations, near};
+use crate::element_turns::with_elements;
 use sinew::Simulation;
 use sinew::materials::{Elastic, Kinematics, NeoHookean, PronyTerm};
 use sinew::math::Mat3;

@@ -32,7 +32,7 @@ pub use by_parts::TwoLevelParts;
 pub(super) use iterations::OfForces;
 pub use newton::PathPoint;
 pub use report::ImplicitSteps;
-pub(super) use statics::{Attempt, Rest, Statics};
+pub(super) use statics::{Attempt, Rest, Statics, warn_of_instability};
 pub(super) use step::Implicit;
 pub(super) use step_control::{Controlled, StepControl};
 pub(super) use unsupported::{check, check_moves};

@@ -105,25 +105,12 @@ impl Statics {
 
     /// Seeks equilibrium under loads and motions in full, from where bodies are.
     pub fn attempt(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<Attempt, Error> {
-        self.iterations.begin_step();
-        bring_state(world)?;
-        self.iterations.kept.keep(world);
-        world.insert_resource(TrialForces { trying: true, ..TrialForces::default() });
         let before = self.iterations.report.newton_iterations;
-        let found = match self.arc {
-            Some(arc) => self.follow(world, passes, &arc),
-            None => self.find(world, passes),
+        let seek = |statics: &mut Self, world: &mut World| match statics.arc {
+            Some(arc) => statics.follow(world, passes, &arc),
+            None => statics.find(world, passes),
         };
-        world.remove_resource::<TrialForces>();
-        if let Some(springs) = &mut world.resource_mut::<Clock>().springs {
-            springs.forces = SpringForces::Stepped;
-        }
-        if !matches!(found, Ok(Attempt::Found(_))) {
-            self.iterations.kept.put_back(world, |_| true);
-        }
-        send_state(world)?;
-        self.iterations.end_step();
-        match found {
+        match self.trying(world, seek, |attempt| matches!(attempt, Attempt::Found(_)))? {
             Ok(Attempt::Found(mut rest)) => {
                 rest.iterations -= before;
                 Ok(Attempt::Found(rest))
@@ -133,6 +120,68 @@ impl Statics {
             Err(Lost::Because(_)) => Ok(Attempt::NotFound),
             Err(Lost::Error(error)) => Err(error),
         }
+    }
+
+    /// Whether bodies that are at rest where they are, under loads and motions in full, give way along some motion.
+    pub fn gives_way(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<bool, Error> {
+        let ask = |statics: &mut Self, world: &mut World| {
+            let clock = *world.resource::<Clock>();
+            let end = clock.relaxation.map_or(0.0, |relaxation| relaxation.end);
+            let mut newton = statics.stand(world, passes, (clock.step, end));
+            let motions = free_motions(newton.trial.world, newton.trial.axes, &newton.motion.free);
+            let gives_way = motions.is_empty() && newton.forces_at_w()?.sound && newton.gives_way()?;
+            let count = newton.trial.count;
+            statics.iterations.count(count);
+            Ok(gives_way)
+        };
+        match self.trying(world, ask, |_| false)? {
+            Ok(gives_way) => Ok(gives_way),
+            Err(Lost::Error(error)) => Err(error),
+            Err(Lost::Because(_)) => Ok(false),
+        }
+    }
+
+    /// Tries something out; all is as it was afterwards, unless what came of it stays.
+    fn trying<T>(
+        &mut self,
+        world: &mut World,
+        seek: impl FnOnce(&mut Self, &mut World) -> Result<T, Lost>,
+        stays: impl FnOnce(&T) -> bool,
+    ) -> Result<Result<T, Lost>, Error> {
+        self.iterations.begin_step();
+        bring_state(world)?;
+        self.iterations.kept.keep(world);
+        world.insert_resource(TrialForces { trying: true, ..TrialForces::default() });
+        let found = seek(self, world);
+        world.remove_resource::<TrialForces>();
+        if let Some(springs) = &mut world.resource_mut::<Clock>().springs {
+            springs.forces = SpringForces::Stepped;
+        }
+        if !found.as_ref().is_ok_and(stays) {
+            self.iterations.kept.put_back(world, |_| true);
+        }
+        send_state(world)?;
+        self.iterations.end_step();
+        Ok(found)
+    }
+
+    /// What Newton's iterations begin with where bodies stand, under loads and motions as they are at a time (s).
+    fn stand<'a, 'w>(
+        &'a mut self,
+        world: &'w mut World,
+        passes: &'w mut [ScheduledPass],
+        (step, end): (u64, f64),
+    ) -> Newton<'a, 'w>
+    where
+        'a: 'w,
+    {
+        let Self { axes, iterations, springs, .. } = self;
+        let trial = Trial { world, passes, axes, springs, step, count: 0, elsewhere: false };
+        let Iterations { motion, space, .. } = &mut *iterations;
+        axes.read(trial.world, motion);
+        trial.world.resource_mut::<Signals>().approach(end, [1.0, 1.0]);
+        begin(space, motion);
+        iterations.newton(trial, 1.0)
     }
 
     fn find(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<Attempt, Lost> {
@@ -174,13 +223,7 @@ impl Statics {
     fn follow(&mut self, world: &mut World, passes: &mut [ScheduledPass], arc: &ArcLength) -> Result<Attempt, Lost> {
         let clock = *world.resource::<Clock>();
         let end = clock.relaxation.map_or(0.0, |relaxation| relaxation.end);
-        let Self { axes, iterations, springs, .. } = self;
-        let trial = Trial { world, passes, axes, springs, step: clock.step, count: 0, elsewhere: false };
-        let Iterations { motion, space, .. } = &mut *iterations;
-        axes.read(trial.world, motion);
-        trial.world.resource_mut::<Signals>().approach(end, [1.0, 1.0]);
-        begin(space, motion);
-        let mut newton = iterations.newton(trial, 1.0);
+        let mut newton = self.stand(world, passes, (clock.step, end));
         let motions = free_motions(newton.trial.world, newton.trial.axes, &newton.motion.free);
         if let Holds::Nothing(motions) = holds(&motions, &mut newton)? {
             return Ok(Attempt::NotHeld(motions));
@@ -190,10 +233,10 @@ impl Statics {
             let row = [number as f64, load_factor, length, iterations as f64, f64::from(u8::from(unstable))];
             world.resource_scope(|world, mut observer: Mut<Observer>| observer.note_path(world, row))
         });
-        let trial = newton.trial;
-        iterations.count(trial.count);
+        let count = newton.trial.count;
+        self.iterations.count(count);
         let path = path?;
-        iterations.place(1.0).arrive(axes, trial.world);
+        self.iterations.place(1.0).arrive(&self.axes, world);
         let unstable = path.last().is_some_and(|point| point.unstable);
         Ok(Attempt::Found(self.rest(0.0, unstable, path)))
     }
@@ -265,6 +308,25 @@ fn not_followed(world: &mut World, what: String) -> Error {
     world.resource_scope(|world, observer: Mut<Observer>| {
         observer.unsolved(world, what, Criterion { value: None, ..Criterion::of("equilibrium") })
     })
+}
+
+/// That what was found does not last.
+pub(in crate::simulation) fn warn_of_instability(world: &mut World) {
+    let clock = *world.resource::<Clock>();
+    let Some(mut memory) = world.get_resource_mut::<GuardMemory>() else { return };
+    memory.warnings.push(Notice {
+        criterion: "equilibrium".into(),
+        part: String::new(),
+        time: clock.time(),
+        step: clock.step,
+        value: 0.0,
+        limit: 0.0,
+        message:
+            "the equilibrium does not last: there is a motion that bodies do not resist but give way to, as a column \
+                  that is about to buckle. What is small and breaks the symmetry, a load across or a motion in time, \
+                  leads to the one that lasts"
+                .into(),
+    });
 }
 
 /// What came of a search for rest at a share of all loads.
