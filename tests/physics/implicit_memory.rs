@@ -28,7 +28,7 @@ fn bytes(solver: &str, elements: &str, cells: u32, held: bool) -> (u64, u64, Vec
     (told.host_bytes, held.iter().filter(apart).map(|(_, bytes)| bytes).sum(), held)
 }
 
-/// What is held does not depend on the elements but by how many nodes an aggregate has. Explicit steps of hexahedra with
+/// What is held does not depend on the elements but by how many nodes aggregates have. Explicit steps of hexahedra with
 /// one point hold least, as there is one a node and not five: 210 bytes a node, against 452 of linear tetrahedra.
 #[test]
 fn implicit_steps_hold_less_than_twice_the_bytes_of_explicit_ones() {

@@ -1,6 +1,6 @@
 //! Steps chosen by an estimate of their error, from what a step shows of the next term of its series.
 //!
-//! The error of a step of h is that of displacements, e (see [`Formula::local_error`](super::formula::Formula::local_error)). Within a frame of T, the
+//! The error of a step of h is that of displacements, e (see `local_error` of its formula). Within a frame of T, the
 //! longest step, T/h such steps add up to ‖e‖ T/h, which is held below the tolerance: an error per unit of time, so
 //! that the error of a motion falls in proportion to the tolerance, whatever the order. Norms are root mean squares
 //! over mass. The next length is that of a proportional and integral controller (Gustafsson 1991), with η = error over

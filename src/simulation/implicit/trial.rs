@@ -165,7 +165,7 @@ impl Trial<'_> {
     }
 }
 
-/// The largest |p|/h of all axes, h that of their nodes. Eight maxima side by side: one alone waits for each comparison.
+/// The largest |p|/h of all axes, h that of their nodes. Eight maxima side by side: one alone waits for comparisons.
 fn largest_share<T: Scalar>(p: &[T], heights: &[T]) -> f64 {
     let share = |p: &[T; 3], height: T| {
         let along = |largest: f64, p: &T| if p.to_f64().abs() > largest { p.to_f64().abs() } else { largest };
