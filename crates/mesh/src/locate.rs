@@ -9,6 +9,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// A point in an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Location {
     /// The element.
     pub element: usize,
@@ -19,6 +20,7 @@ pub struct Location {
 }
 
 /// Finds points in a mesh, by boxes of space with the elements that touch them.
+#[doc(hidden)]
 pub struct Locator<'a> {
     mesh: &'a Mesh,
     low: DVec3,

@@ -3,6 +3,7 @@
 use super::Cells;
 
 /// The piece of a cell that is not there.
+#[doc(hidden)]
 pub const NO_PIECE: u32 = u32::MAX;
 
 impl Cells {
@@ -27,6 +28,7 @@ impl Cells {
 }
 
 /// The lowest node that one is known to hang together with; ways there become shorter.
+#[doc(hidden)]
 pub fn lowest(lower: &mut [u32], mut node: u32) -> u32 {
     while lower[node as usize] != node {
         let next = lower[node as usize];

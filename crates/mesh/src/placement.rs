@@ -32,6 +32,7 @@ impl Mesh {
 }
 
 /// The rotation about the axes x, then y, then z through the origin (degrees).
+#[doc(hidden)]
 pub fn rotation_about_axes(degrees: DVec3) -> DMat3 {
     let turn = |angle: f64, about: fn(f64) -> DMat3| {
         if angle == 0.0 { DMat3::IDENTITY } else { about(angle.to_radians()) }
@@ -43,6 +44,7 @@ pub fn rotation_about_axes(degrees: DVec3) -> DMat3 {
 
 /// The angles (degrees) of which [`rotation_about_axes`] makes a rotation. Where that about y is 90 degrees, those
 /// about x and z are not the only ones that do.
+#[doc(hidden)]
 pub fn angles_about_axes(turn: DMat3) -> DVec3 {
     let at = |row: usize, column: usize| turn.col(column)[row];
     let z = at(1, 0).atan2(at(0, 0));

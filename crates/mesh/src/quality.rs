@@ -7,6 +7,7 @@ pub const BINS: usize = 10;
 
 /// The quality of each element: mean ratio of tetrahedra, scaled Jacobian of hexahedra.
 #[derive(Clone, Debug, serde::Serialize)]
+#[doc(hidden)]
 pub struct Quality {
     /// Rows of elements with their quality, the ten worst, the worst first.
     pub worst: Vec<(usize, f64)>,

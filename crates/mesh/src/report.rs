@@ -13,6 +13,7 @@ const UNITS: [(&str, f64); 4] = [("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("µm",
 
 /// A mesh in short. Lengths are in the mesh's own unit, metres for the engine.
 #[derive(Clone, Debug, Serialize)]
+#[doc(hidden)]
 pub struct MeshReport {
     /// Nodes.
     pub nodes: usize,
@@ -43,6 +44,7 @@ pub struct MeshReport {
 
 /// A named set in short.
 #[derive(Clone, Debug, Serialize)]
+#[doc(hidden)]
 pub struct SetReport {
     /// Its name.
     pub name: String,
@@ -110,6 +112,7 @@ fn as_map<S: Serializer>(elements: &[(&'static str, usize)], serializer: S) -> R
 }
 
 /// The box around some points; infinite where there are none.
+#[doc(hidden)]
 pub fn extent(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
     points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), point| (min.min(point), max.max(point)))
 }

@@ -155,6 +155,7 @@ pub fn ascending(a: u32, b: u32) -> [u32; 2] {
 
 /// The points of a face, each once, by its corners, of which a triangle repeats the last: these, then the
 /// [middles](Mesh::middles) of its edges, in their order, where there are some.
+#[doc(hidden)]
 pub fn nodes_of_face(face: &[u32; 4], middles: &HashMap<[u32; 2], u32>) -> Vec<u32> {
     let corners = &face[..CellKind::of_face(face).node_count()];
     let ends = (0..corners.len()).map(|place| (corners[place], corners[(place + 1) % corners.len()]));

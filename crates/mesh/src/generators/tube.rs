@@ -52,6 +52,7 @@ pub fn tube_mesh(
 }
 
 /// The fewest cells around a tube: each turns by less than a half.
+#[doc(hidden)]
 pub fn cells_around(angle: f64) -> u32 {
     1 + (angle / 180.0).floor() as u32
 }

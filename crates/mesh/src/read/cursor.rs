@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 /// How numbers are written from here on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[doc(hidden)]
 pub enum Form {
     /// As words.
     Text,
@@ -16,6 +17,7 @@ pub enum Form {
 }
 
 /// A place in a file.
+#[doc(hidden)]
 pub struct Cursor<'a> {
     bytes: &'a [u8],
     at: usize,

@@ -5,6 +5,7 @@ use std::path::Path;
 
 /// A fault found while a file is read, before its name is added.
 #[derive(Debug)]
+#[doc(hidden)]
 pub struct Fault {
     /// Where in the file.
     pub at: FilePosition,

@@ -22,6 +22,7 @@ const NAMED: usize = 4;
 
 /// A surface of triangles: no solid yet, whatever it may be.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[doc(hidden)]
 pub struct Triangles {
     /// Points (m).
     pub points: Vec<DVec3>,
@@ -33,6 +34,7 @@ pub struct Triangles {
 
 /// Why triangles are no tool.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[doc(hidden)]
 pub enum SurfaceError {
     /// There are none.
     #[error("the surface has no triangles")]
@@ -93,6 +95,7 @@ pub enum SurfaceError {
 
 /// Edges with one and the same fault.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct EdgeFault {
     /// What is wrong with them.
     pub what: &'static str,
