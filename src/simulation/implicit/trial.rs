@@ -127,7 +127,7 @@ impl Trial<'_> {
             let Some(external) = entity.get::<ExternalForce>() else { continue };
             with_numbers!(net, T => {
                 let net = &mut net.slice_mut::<T>()[range];
-                net.iter_mut().zip(external.slice::<T>()).for_each(|(f, &r)| *f = *f - r);
+                net.iter_mut().zip(external.slice::<T>()).for_each(|(f, &r)| *f -= r);
             });
         }
     }
