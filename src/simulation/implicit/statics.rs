@@ -127,7 +127,9 @@ impl Statics {
         let ask = |statics: &mut Self, world: &mut World| {
             let clock = *world.resource::<Clock>();
             let end = clock.relaxation.map_or(0.0, |relaxation| relaxation.end);
-            let mut newton = statics.stand(world, passes, (clock.step, end));
+            let Self { axes, iterations, springs, .. } = statics;
+            let trial = Trial { world, passes, axes, springs, step: clock.step, count: 0, elsewhere: false };
+            let (mut newton, _) = prepared(iterations, trial, (end, [1.0, 1.0]))?;
             let motions = free_motions(newton.trial.world, newton.trial.axes, &newton.motion.free);
             let gives_way = motions.is_empty() && newton.forces_at_w()?.sound && newton.gives_way()?;
             let count = newton.trial.count;
@@ -163,25 +165,6 @@ impl Statics {
         send_state(world)?;
         self.iterations.end_step();
         Ok(found)
-    }
-
-    /// What Newton's iterations begin with where bodies stand, under loads and motions as they are at a time (s).
-    fn stand<'a, 'w>(
-        &'a mut self,
-        world: &'w mut World,
-        passes: &'w mut [ScheduledPass],
-        (step, end): (u64, f64),
-    ) -> Newton<'a, 'w>
-    where
-        'a: 'w,
-    {
-        let Self { axes, iterations, springs, .. } = self;
-        let trial = Trial { world, passes, axes, springs, step, count: 0, elsewhere: false };
-        let Iterations { motion, space, .. } = &mut *iterations;
-        axes.read(trial.world, motion);
-        trial.world.resource_mut::<Signals>().approach(end, [1.0, 1.0]);
-        begin(space, motion);
-        iterations.newton(trial, 1.0)
     }
 
     fn find(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<Attempt, Lost> {
@@ -223,7 +206,13 @@ impl Statics {
     fn follow(&mut self, world: &mut World, passes: &mut [ScheduledPass], arc: &ArcLength) -> Result<Attempt, Lost> {
         let clock = *world.resource::<Clock>();
         let end = clock.relaxation.map_or(0.0, |relaxation| relaxation.end);
-        let mut newton = self.stand(world, passes, (clock.step, end));
+        let Self { axes, iterations, springs, .. } = self;
+        let trial = Trial { world, passes, axes, springs, step: clock.step, count: 0, elsewhere: false };
+        let Iterations { motion, space, .. } = &mut *iterations;
+        axes.read(trial.world, motion);
+        trial.world.resource_mut::<Signals>().approach(end, [1.0, 1.0]);
+        begin(space, motion);
+        let mut newton = iterations.newton(trial, 1.0);
         let motions = free_motions(newton.trial.world, newton.trial.axes, &newton.motion.free);
         if let Holds::Nothing(motions) = holds(&motions, &mut newton)? {
             return Ok(Attempt::NotHeld(motions));
@@ -251,16 +240,8 @@ impl Statics {
     ) -> Result<Balance, Lost> {
         let step = world.resource::<Clock>().step;
         let Self { axes, iterations, springs, .. } = self;
-        let mut trial = Trial { world, passes, axes, springs, step, count: 0, elsewhere: false };
-        let Iterations { motion, space, .. } = &mut *iterations;
-        axes.read(trial.world, motion);
-        trial.world.resource_mut::<Signals>().approach(end, shares);
-        trial.boundary()?;
-        Springs::seek(trial.world)?;
-        super::step::held_axes(trial.world, axes, motion, &mut space.to_go);
-        let grasped = Grasped::hold(trial.world, axes, motion, &mut space.to_go);
-        begin(space, motion);
-        let mut newton = iterations.newton(trial, 1.0);
+        let trial = Trial { world, passes, axes, springs, step, count: 0, elsewhere: false };
+        let (mut newton, grasped) = prepared(iterations, trial, (end, shares))?;
         newton.farthest = farthest;
         if shares[1] < 1.0 {
             newton.settings.tolerance = newton.settings.tolerance.max(ON_THE_WAY);
@@ -295,6 +276,24 @@ impl Statics {
         place.arrive(axes, trial.world);
         Ok(rest)
     }
+}
+
+/// What Newton's iterations begin with, where bodies stand, while loads and motions go from one share of what they are
+/// at a time (s) to another: with what holds nodes, and what touches.
+fn prepared<'a, 'w>(
+    iterations: &'a mut Iterations,
+    mut trial: Trial<'w>,
+    (end, shares): (f64, [f64; 2]),
+) -> Result<(Newton<'a, 'w>, Grasped), Lost> {
+    let Iterations { motion, space, .. } = &mut *iterations;
+    trial.axes.read(trial.world, motion);
+    trial.world.resource_mut::<Signals>().approach(end, shares);
+    trial.boundary()?;
+    Springs::seek(trial.world)?;
+    super::step::held_axes(trial.world, trial.axes, motion, &mut space.to_go);
+    let grasped = Grasped::hold(trial.world, trial.axes, motion, &mut space.to_go);
+    begin(space, motion);
+    Ok((iterations.newton(trial, 1.0), grasped))
 }
 
 /// Begins where bodies stand, without inertia.
