@@ -264,3 +264,29 @@ fn hard_cases_rest_where_relaxation_has_them() {
         near(name, apart(&mut solved, &mut relaxed, "body"), 0.0, 1.0, 1e-6);
     }
 }
+
+/// A column that a closed tool holds at its foot gives way where one with a clamped foot does (π² E I/(4 L²)), and not
+/// where springs of a ring guide its head as well (some eight times as much). Pseudo-steps find rest at the higher load,
+/// as they do without what holds and touches.
+#[test]
+fn whether_rest_lasts_is_asked_with_what_holds_and_touches() {
+    let critical = std::f64::consts::PI.powi(2) * 3e3 * 1e-8 / 12.0 / (4.0 * 0.01);
+    let ring = "\"ring\": (shape: Tube(length: 0.01, inner: 0.00705, outer: 0.01), at: (0.005, 0.005, 0.095))";
+    let touches = "contacts: [Tool(tool: \"ring\", law: Penalty(share: 1))],";
+    for (share, ring, touches, buckles) in
+        [(0.85, "", "", false), (1.5, "", "", true), (1.5, ring, touches, false), (0.85, ring, touches, false)]
+    {
+        let text = format!(
+            "(duration: 1, analysis: {NEWTON},
+            bodies: {{\"b\": (mesh: Box(size: (0.01, 0.01, 0.1), cells: (2, 2, 20), elements: Hex8), material: \"m\")}},
+            materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0))}},
+            tools: {{\"jaws\": (shape: Sphere(radius: 0.01), at: (0.005, 0.005, 0)), {ring}}}, {touches}
+            attachments: [Grasp(tool: \"jaws\", on: Plane(normal: (0, 0, 1), at: 0), closed: Step())],
+            loads: [NodalForce(on: Plane(normal: (0, 0, 1), at: 0.1), force: (0, 0, {:?}), share: Total)])",
+            -share * critical
+        );
+        let simulation = rest(&text);
+        let found = simulation.equilibrium().unwrap();
+        assert_eq!(found.unstable, buckles, "{share}, {touches}: {found:?}");
+    }
+}

@@ -16,11 +16,10 @@ pub(super) struct Axes {
 
 /// What the motion of axes depends on, at the beginning of a step: as columns have it.
 pub(super) struct Motion {
-    /// Displacement and that of the last step (m), what rounding has lost of them not counted, and acceleration (m/s²)
-    /// where that is carried on.
+    /// Displacement and that of the last step (m), what rounding has lost of them not counted. Accelerations are in
+    /// their columns, where they are carried on: nothing writes over them while a step is sought.
     pub u: Reals,
     pub step: Reals,
-    pub a: Reals,
     /// What makes a velocity of a step (1/s); 0 at rest.
     pub rate: f64,
     /// Mass (kg) of nodes, and damping coefficient (kg/s) where there is one.
@@ -71,15 +70,23 @@ impl Axes {
         self.bodies.iter().copied().zip(self.ranges.iter().cloned())
     }
 
+    /// Accelerations before a step (m/s²), of all axes; 0 where none are carried on.
+    pub fn accelerations<'w>(&'w self, world: &'w World) -> impl Iterator<Item = f64> + 'w {
+        self.each().flat_map(|(body, range)| {
+            let column = world.get::<Acceleration>(body);
+            (0..range.len()).map(move |at| column.map_or(0.0, |acceleration| acceleration.get(at)))
+        })
+    }
+
     /// A motion that is not known yet.
     pub fn motion(&self) -> Motion {
-        let [u, step, a, mass, damping] = [(); 5].map(|()| none(self.precision()));
-        Motion { u, step, a, rate: 0.0, mass, damping, free: Vec::new() }
+        let [u, step, mass, damping] = [(); 4].map(|()| none(self.precision()));
+        Motion { u, step, rate: 0.0, mass, damping, free: Vec::new() }
     }
 
     /// Reads all that a step begins with; the velocity of a step of the clock's length.
     pub fn read(&self, world: &World, motion: &mut Motion) {
-        let Motion { u, step, a, rate, mass, damping, free } = motion;
+        let Motion { u, step, rate, mass, damping, free } = motion;
         *rate = world.resource::<Clock>().rate();
         resize(u, self.len());
         resize(step, self.len());
@@ -98,10 +105,6 @@ impl Axes {
             copy_to(u, range.start, place);
             copy_to(step, range.start, increment);
             copy_to(mass, range.start / 3, masses);
-            if let Some(acceleration) = entity.get::<Acceleration>() {
-                resize(a, self.len());
-                copy_to(a, range.start, acceleration);
-            }
             if let Some(damped) = entity.get::<DampingCoefficient>() {
                 resize(damping, self.len() / 3);
                 copy_to(damping, range.start / 3, damped);

@@ -121,7 +121,7 @@ impl OnDevice {
             (vectors.inertia, rounded(&mut { inertia })),
             (vectors.node_blocks, rounded(&mut { blocks })),
         ];
-        let steps = looks_at_steps.then(|| (vectors.place_step, rounded(&mut system.place.steps())));
+        let steps = looks_at_steps.then(|| (vectors.place_step, rounded(&mut system.place.steps(trial.axes, world))));
         for (buffer, numbers) in filled.into_iter().chain(steps) {
             upload(world, buffer, &numbers)?;
         }

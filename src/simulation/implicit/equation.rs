@@ -1,11 +1,13 @@
 //! The equation of each axis in a step: its inertia, its damping, and what it is at a place.
 
-use super::axes::Motion;
+use super::axes::{Axes, Motion};
+use super::forces_before::ForcesBefore;
 use super::formula::Formula;
 use super::place::Place;
 use super::vectors::with_numbers;
-use crate::components::Reals;
+use crate::components::{Acceleration, Reals};
 use crate::math::Scalar;
+use bevy_ecs::prelude::*;
 
 /// D of nodes (N/m): what a displacement of 1 m changes of the equation of an axis beside forces.
 #[derive(Clone, Copy)]
@@ -46,8 +48,8 @@ impl Inertia<'_> {
 impl Motion {
     /// Bytes of all vectors.
     pub fn bytes(&self) -> usize {
-        let Self { u, step, a, rate: _, mass, damping, free } = self;
-        let numbers: usize = [u, step, a, mass, damping].into_iter().map(|vector| vector.bytes().len()).sum();
+        let Self { u, step, rate: _, mass, damping, free } = self;
+        let numbers: usize = [u, step, mass, damping].into_iter().map(|vector| vector.bytes().len()).sum();
         numbers + size_of_val(&free[..])
     }
 
@@ -59,11 +61,6 @@ impl Motion {
     /// The velocity before (m/s), to the digits of the run.
     pub fn velocity(&self, axis: usize) -> f64 {
         self.rate * self.step.get(axis)
-    }
-
-    /// The acceleration before (m/s²), 0 where none is carried on.
-    pub fn acceleration(&self, axis: usize) -> f64 {
-        if self.a.is_empty() { 0.0 } else { self.a.get(axis) }
     }
 
     /// The damping coefficient of an axis (kg/s).
@@ -78,15 +75,20 @@ impl Motion {
     }
 
     /// The velocity (m/s) and acceleration (m/s²) at the end of a step of h, of an axis that is so far from y then (m),
-    /// and had a velocity.
-    pub fn arrival(&self, formula: &Formula, axis: usize, h: f64, (correction, velocity): (f64, f64)) -> (f64, f64) {
+    /// and had a velocity and an acceleration before.
+    pub fn arrival(
+        &self,
+        formula: &Formula,
+        axis: usize,
+        h: f64,
+        (correction, velocity, before): (f64, f64, f64),
+    ) -> (f64, f64) {
         if formula.is_of_rest() {
             return (0.0, 0.0);
         }
         if !self.free[axis] {
             return (if self.is_held(axis) { correction / h } else { 0.0 }, 0.0);
         }
-        let before = self.acceleration(axis);
         let acceleration = formula.acceleration(h, correction, before);
         (formula.velocity(h, velocity, [before, acceleration]), acceleration)
     }
@@ -98,46 +100,70 @@ impl Motion {
         Inertia { mass, damping, per_mass, per_damping }
     }
 
-    /// What is constant of the equation of an axis (N) beside D (w − y) and the forces at the end; `before` is F − R
-    /// before, where that counts.
-    fn constant(&self, formula: &Formula, h: f64, axis: usize, before: &Reals) -> f64 {
-        if !self.free[axis] || self.a.is_empty() && self.damping.is_empty() && before.is_empty() {
+    /// What is constant of the equation of an axis (N) beside D (w − y) and the forces at the end; `before` gives its
+    /// acceleration (m/s²) and F − R (N) before.
+    fn constant(&self, formula: &Formula, h: f64, axis: usize, before: impl FnOnce() -> (f64, f64)) -> f64 {
+        if !self.free[axis] || !formula.needs_acceleration() && self.damping.is_empty() {
             return 0.0;
         }
         let (mass, damping, velocity) = (self.mass.get(axis / 3), self.damping(axis), self.velocity(axis));
-        let (after, acceleration) = self.arrival(formula, axis, h, (0.0, velocity));
-        let accelerations = [self.acceleration(axis), acceleration];
-        let inertial = formula.inertial_force(mass, damping, [velocity, after], accelerations);
-        if before.is_empty() { inertial } else { inertial + formula.alpha_f * before.get(axis) }
+        let (acceleration, force) = before();
+        let (after, arrives) = self.arrival(formula, axis, h, (0.0, velocity, acceleration));
+        let inertial = formula.inertial_force(mass, damping, [velocity, after], [acceleration, arrives]);
+        inertial + formula.alpha_f * force
+    }
+}
+
+/// What a step begins with beside its motion.
+#[derive(Clone, Copy)]
+pub(super) struct Before<'a> {
+    pub axes: &'a Axes,
+    /// The columns of accelerations are in it.
+    pub world: &'a World,
+    pub forces: &'a ForcesBefore,
+}
+
+impl Before<'_> {
+    /// Gives each axis with what is constant of its equation (N).
+    fn each_constant(&self, place: &Place<'_>, mut take: impl FnMut(usize, f64)) {
+        let Place { formula, h, motion, .. } = place;
+        for (body, range) in self.axes.each() {
+            let column = self.world.get::<Acceleration>(body);
+            let acceleration = |axis: usize| column.map_or(0.0, |column| column.get(axis - range.start));
+            for axis in range.clone() {
+                let before = || (acceleration(axis), self.forces.net(axis));
+                take(axis, motion.constant(formula, *h, axis, before));
+            }
+        }
     }
 }
 
 impl Place<'_> {
     /// What inertia, damping and the forces before make of the equations of free axes (N): its norm.
-    pub fn inertial_forces(&self, before: &Reals) -> f64 {
+    pub fn inertial_forces(&self, before: &Before<'_>) -> f64 {
         let Self { formula, h, motion, .. } = self;
-        let inertia = motion.inertia(formula, *h);
-        let force =
-            |axis: usize| motion.constant(formula, *h, axis, before) + inertia.of(axis / 3) * self.correction(axis);
-        let free = (0..motion.free.len()).filter(|&axis| motion.free[axis]);
-        free.map(|axis| force(axis).powi(2)).sum::<f64>().sqrt()
+        let (inertia, mut square) = (motion.inertia(formula, *h), 0.0);
+        before.each_constant(self, |axis, constant| {
+            if motion.free[axis] {
+                square += (constant + inertia.of(axis / 3) * self.correction(axis)).powi(2);
+            }
+        });
+        square.sqrt()
     }
 
     /// The residual of all free axes there (N), from the forces there.
-    pub fn fill_residual(&self, net: &Reals, before: &Reals, residual: &mut Reals) {
+    pub fn fill_residual(&self, net: &Reals, before: &Before<'_>, residual: &mut Reals) {
         let Self { formula, h, motion, correction, .. } = self;
         let (stiffness, inertia) = (formula.stiffness(), motion.inertia(formula, *h));
         with_numbers!(residual, T => {
-            let (net, correction) = (net.slice::<T>(), correction.slice::<T>());
-            for (axis, residual) in residual.slice_mut::<T>().iter_mut().enumerate() {
+            let (net, correction, residual) = (net.slice::<T>(), correction.slice::<T>(), residual.slice_mut::<T>());
+            before.each_constant(self, |axis, constant| {
                 let of_inertia = || inertia.of(axis / 3) * correction[axis].to_f64();
-                *residual = match motion.free[axis] {
-                    true => T::from_f64(
-                        motion.constant(formula, *h, axis, before) + of_inertia() + stiffness * net[axis].to_f64(),
-                    ),
+                residual[axis] = match motion.free[axis] {
+                    true => T::from_f64(constant + of_inertia() + stiffness * net[axis].to_f64()),
                     false => T::default(),
                 };
-            }
+            });
         });
     }
 }

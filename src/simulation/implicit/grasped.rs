@@ -3,7 +3,7 @@
 use super::axes::{Axes, Motion};
 use super::place::Place;
 use super::vectors::resize;
-use crate::components::{DisplacementCompensation, ExternalForce, Grasps, InternalForce, Reals};
+use crate::components::{Acceleration, DisplacementCompensation, ExternalForce, Grasps, InternalForce, Reals};
 use crate::systems::{HeldNode, held_in_step, note_held};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -59,7 +59,8 @@ impl Grasped {
         for (node, first, own) in &self.0 {
             let of_axis = |i: usize| {
                 let axis = first + i;
-                let (before, velocity) = (motion.velocity(axis), place.arrival(axis).0);
+                let acceleration = world.get::<Acceleration>(node.body).map_or(0.0, |all| all.get(3 * node.row + i));
+                let (before, velocity) = (motion.velocity(axis), place.arrival(axis, acceleration).0);
                 let (mass, damping) = (motion.mass.get(axis / 3), motion.damping(axis));
                 let inertial = mass * (velocity - before) / h + damping * velocity;
                 let inertial = if formula.is_of_rest() { 0.0 } else { inertial };

@@ -48,7 +48,7 @@ impl Iterations {
             preconditioner: of_name(preconditioner, axes.precision()),
             motion: axes.motion(),
             space: Workspace::of(axes),
-            kept: Kept::default(),
+            kept: Kept::new(axes.precision()),
             sums: Sums::on(world.resource::<Cpu>()),
             report: ImplicitSteps::default(),
             durations: Durations::default(),
@@ -64,6 +64,7 @@ impl Iterations {
             trial,
             settings: self.settings,
             motion: &self.motion,
+            before: &self.kept.forces,
             space: &mut self.space,
             preconditioner: &mut *self.preconditioner,
             report: &mut self.report,
@@ -88,14 +89,20 @@ impl Iterations {
     }
 
     /// Whether the end of a step of h is taken, by what chooses steps.
-    pub fn takes(&self, control: Option<&mut StepControl>, h: f64, found: &Found) -> bool {
+    pub fn takes(
+        &self,
+        control: Option<&mut StepControl>,
+        h: f64,
+        found: &Found,
+        (axes, world): (&Axes, &World),
+    ) -> bool {
         let Settings { formula, newton, budget, .. } = &self.settings;
         let Some(control) = control else { return true };
         let is_stuck = *newton > 1 && budget.is_none() && !found.solved;
         if is_stuck && control.cut_back(h) {
             return false;
         }
-        let [error, reach] = error_and_reach(&self.place(h));
+        let [error, reach] = error_and_reach(&self.place(h), axes, world);
         control.takes(h, error, reach, formula.order())
     }
 
@@ -137,7 +144,7 @@ impl Iterations {
         let h = world.resource::<Clock>().time_step;
         let Self { settings, motion, space, preconditioner, kept, .. } = self;
         axes.read(world, motion);
-        kept.keep(world);
+        kept.keep(world, axes);
         let formula = &settings.formula;
         preconditioner.follow(&Operator {
             world,

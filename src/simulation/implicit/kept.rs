@@ -1,12 +1,14 @@
 //! What a step that is not found leaves as it was.
 
+use super::axes::Axes;
+use super::forces_before::ForcesBefore;
 use crate::components::*;
 use bevy_ecs::prelude::*;
 
-/// Whether the search for a step writes over a column; what rounding leaves out is written when one is taken, and what
-/// moves is in the [`Motion`](super::axes::Motion) that it begins with.
+/// Whether the search for a step writes over a column beside those of forces; what rounding leaves out is written when
+/// one is taken, and what moves is in the [`Motion`](super::axes::Motion) that it begins with.
 fn is_tried(column: &ColumnAccess) -> bool {
-    let subjects = [Subject::Force, Subject::Memory, Subject::Grip];
+    let subjects = [Subject::Memory, Subject::Grip];
     column.role == Role::State && subjects.contains(&column.subject)
 }
 
@@ -16,21 +18,27 @@ fn is_tried_at_rest(column: &ColumnAccess) -> bool {
     is_tried(column) || moves && column.increments != Increments::SecondHalf || column.subject == Subject::Touch
 }
 
-/// These columns as they were at the beginning of the step.
-#[derive(Default)]
+/// These columns as they were at the beginning of the step, and forces.
 pub(super) struct Kept {
+    pub forces: ForcesBefore,
     columns: Vec<(ColumnAccess, Entity, Vec<u8>)>,
     of_rest: bool,
 }
 
 impl Kept {
+    /// What the search for a step leaves as it was.
+    pub fn new(precision: Precision) -> Self {
+        Self { forces: ForcesBefore::new(precision), columns: Vec::new(), of_rest: false }
+    }
+
     /// What a search for rest leaves as it was.
-    pub fn of_rest() -> Self {
-        Self { columns: Vec::new(), of_rest: true }
+    pub fn of_rest(precision: Precision) -> Self {
+        Self { of_rest: true, ..Self::new(precision) }
     }
 
     /// Keeps them, where they were kept before.
-    pub fn keep(&mut self, world: &mut World) {
+    pub fn keep(&mut self, world: &mut World, axes: &Axes) {
+        self.forces.read(world, axes);
         if self.columns.is_empty() {
             self.columns = find(world, if self.of_rest { is_tried_at_rest } else { is_tried });
         }
@@ -40,8 +48,18 @@ impl Kept {
         }
     }
 
-    /// Puts some of them back.
-    pub fn put_back(&self, world: &mut World, which: impl Fn(&ColumnAccess) -> bool) {
+    /// Puts all back.
+    pub fn put_back(&self, world: &mut World, axes: &Axes) {
+        self.forces.put_back(world, axes);
+        self.put_columns_back(world, |_| true);
+    }
+
+    /// Puts memories back.
+    pub fn put_memories_back(&self, world: &mut World) {
+        self.put_columns_back(world, |column| column.subject == Subject::Memory);
+    }
+
+    fn put_columns_back(&self, world: &mut World, which: impl Fn(&ColumnAccess) -> bool) {
         for (column, entity, bytes) in self.columns.iter().filter(|(column, ..)| which(column)) {
             (column.write)(world, *entity, bytes);
         }
@@ -49,7 +67,7 @@ impl Kept {
 
     /// Their bytes.
     pub fn bytes(&self) -> usize {
-        self.columns.iter().map(|(.., bytes)| bytes.len()).sum()
+        self.forces.bytes() + self.columns.iter().map(|(.., bytes)| bytes.len()).sum::<usize>()
     }
 
     /// Whether viscous memories are among them.

@@ -7,6 +7,7 @@ mod conjugate_gradients;
 mod device;
 mod differences;
 mod equation;
+mod forces_before;
 mod formula;
 mod free_motions;
 mod grasped;

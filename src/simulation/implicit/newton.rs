@@ -10,6 +10,8 @@ use super::axes::{Axes, Motion};
 use super::conjugate_gradients::{Ended, Solved, Stop, Vectors, solve};
 use super::device::{self, LinearSystem, OnDevice};
 use super::differences::difference;
+use super::equation::Before;
+use super::forces_before::ForcesBefore;
 use super::formula::Formula;
 use super::place::Place;
 use super::preconditioner::{Operator, Preconditioner};
@@ -17,7 +19,7 @@ use super::report::ImplicitSteps;
 use super::springs::Springs;
 use super::sums::Sums;
 use super::trial::{Trial, Tried};
-use super::vectors::{clear, copy, none, resize, update};
+use super::vectors::{clear, none, update};
 use crate::components::{Precision, Reals};
 use crate::error::Error;
 
@@ -82,9 +84,8 @@ pub(super) struct Workspace {
     pub correction: Reals,
     /// How far held axes still have to go (m); empty where none has.
     pub to_go: Reals,
-    /// F − R at w (N), and at the beginning of the step where that counts; else empty.
+    /// F − R at w (N).
     pub net: Reals,
-    pub before: Reals,
     /// The residual g at w (N). A solve begins with the right-hand side in its place, and leaves what it leaves.
     residual: Reals,
     /// The way of an iteration (m).
@@ -95,25 +96,21 @@ pub(super) struct Workspace {
 impl Workspace {
     /// Of all axes.
     pub fn of(axes: &Axes) -> Self {
-        let [to_go, before] = [(); 2].map(|()| none(axes.precision()));
+        let to_go = none(axes.precision());
         let [correction, net, residual, p, direction, image] = [(); 6].map(|()| axes.zeros());
-        Self { correction, to_go, net, before, residual, p, vectors: Vectors { direction, image } }
+        Self { correction, to_go, net, residual, p, vectors: Vectors { direction, image } }
     }
 
     /// Bytes of all vectors.
     pub fn bytes(&self) -> usize {
-        let Self { correction, to_go, net, before, residual, p, vectors: Vectors { direction, image } } = self;
-        let all = [correction, to_go, net, before, residual, p, direction, image];
+        let Self { correction, to_go, net, residual, p, vectors: Vectors { direction, image } } = self;
+        let all = [correction, to_go, net, residual, p, direction, image];
         all.into_iter().map(|vector| vector.bytes().len()).sum()
     }
 
-    /// Begins at y, with the forces at the beginning of the step where the formula has them.
-    pub fn begin(&mut self, formula: &Formula) {
+    /// Begins at y.
+    pub fn begin(&mut self) {
         clear(&mut self.correction);
-        if formula.alpha_f != 0.0 {
-            resize(&mut self.before, self.net.len());
-            copy(&mut self.before, &self.net);
-        }
     }
 }
 
@@ -128,6 +125,8 @@ pub(super) struct Newton<'a, 'w> {
     pub trial: Trial<'w>,
     pub settings: Settings,
     pub motion: &'a Motion,
+    /// Forces at the beginning of the step.
+    pub before: &'a ForcesBefore,
     pub space: &'a mut Workspace,
     pub preconditioner: &'a mut dyn Preconditioner,
     pub report: &'a mut ImplicitSteps,
@@ -235,17 +234,18 @@ impl Newton<'_, '_> {
 
     /// g at w, from the forces there; its norm (N).
     fn residual(&mut self) -> f64 {
-        let Self { trial, settings, h, motion, space, sums, .. } = self;
-        let Workspace { correction, net, before, residual, .. } = &mut **space;
+        let Self { trial, settings, h, motion, before: forces, space, sums, .. } = self;
+        let Workspace { correction, net, residual, .. } = &mut **space;
         let place = Place { formula: &settings.formula, h: *h, motion, correction, beyond: None };
-        place.fill_residual(net, before, residual);
+        place.fill_residual(net, &Before { axes: trial.axes, world: trial.world, forces }, residual);
         trial.springs.press(settings.formula.stiffness(), &motion.free, residual);
         sums.norm(residual)
     }
 
     /// What the residual is compared with (N): loads, reactions and inertia.
     fn scale(&self, tried: &Tried) -> f64 {
-        tried.loads.sqrt() + tried.reactions.sqrt() + self.place().inertial_forces(&self.space.before)
+        let before = Before { axes: self.trial.axes, world: self.trial.world, forces: self.before };
+        tried.loads.sqrt() + tried.reactions.sqrt() + self.place().inertial_forces(&before)
     }
 
     /// Notes how a step ends, and gives what is left of its residual.

@@ -46,20 +46,20 @@ impl<'a> Place<'a> {
         if motion.free[axis] { h * motion.velocity(axis) + self.correction(axis) } else { self.correction(axis) }
     }
 
-    /// The velocity (m/s) and acceleration (m/s²) of an axis there.
-    pub fn arrival(&self, axis: usize) -> (f64, f64) {
+    /// The velocity (m/s) and acceleration (m/s²) of an axis there, that had an acceleration before.
+    pub fn arrival(&self, axis: usize, before: f64) -> (f64, f64) {
         let Self { formula, h, motion, .. } = self;
-        motion.arrival(formula, axis, *h, (self.correction(axis), motion.velocity(axis)))
+        motion.arrival(formula, axis, *h, (self.correction(axis), motion.velocity(axis), before))
     }
 
     /// The step (m) that the velocity of an axis there is; at rest the way from where the search began.
-    fn step(&self, axis: usize) -> f64 {
-        if self.formula.is_of_rest() { self.moved(axis) } else { self.h * self.arrival(axis).0 }
+    fn step(&self, axis: usize, before: f64) -> f64 {
+        if self.formula.is_of_rest() { self.moved(axis) } else { self.h * self.arrival(axis, before).0 }
     }
 
     /// The steps of all axes (m).
-    pub fn steps(&self) -> impl Iterator<Item = f64> + '_ {
-        (0..self.correction.len()).map(|axis| self.step(axis))
+    pub fn steps(&self, axes: &'a Axes, world: &'a World) -> impl Iterator<Item = f64> {
+        axes.accelerations(world).enumerate().map(|(axis, before)| self.step(axis, before))
     }
 
     /// Puts all axes there, rounded.
@@ -99,8 +99,11 @@ impl<'a> Place<'a> {
     /// Makes the steps of all axes those of their velocities there, rounded.
     pub fn write_steps(&self, axes: &Axes, world: &mut World) {
         for (body, range) in axes.each() {
-            let Some(mut step) = world.get_mut::<DisplacementIncrement>(body) else { continue };
-            range.clone().for_each(|axis| step.set(axis - range.start, self.step(axis)));
+            let Some(mut step) = taken::<DisplacementIncrement>(world, body) else { continue };
+            let column = world.get::<Acceleration>(body);
+            let before = |at: usize| column.map_or(0.0, |acceleration| acceleration.get(at));
+            (0..range.len()).for_each(|at| step.set(at, self.step(range.start + at, before(at))));
+            put(world, body, DisplacementIncrement(step));
         }
     }
 
@@ -122,7 +125,9 @@ impl<'a> Place<'a> {
                 let velocity = motion.rate * (motion.step.get(axis) - of_step);
                 let predicted = if motion.free[axis] { h * velocity } else { 0.0 };
                 let w = motion.u.get(axis) - of_u + predicted + self.correction(axis);
-                let (arrives, acceleration) = motion.arrival(formula, axis, *h, (self.correction(axis), velocity));
+                let before = accelerations.as_ref().map_or(0.0, |all| all.get(i));
+                let (arrives, acceleration) =
+                    motion.arrival(formula, axis, *h, (self.correction(axis), velocity, before));
                 u.set(i, w);
                 step.set(i, h * arrives);
                 if let Some(all) = &mut accelerations {

@@ -68,7 +68,7 @@ impl Statics {
         let axes = Axes::of(world);
         let settings = Settings { formula: Formula::of_rest(), newton: MOST_ITERATIONS, tolerance, budget: None };
         let mut iterations = Iterations::new(settings, schema::Preconditioner::TwoLevel, &axes, world);
-        iterations.kept = Kept::of_rest();
+        iterations.kept = Kept::of_rest(axes.precision());
         Self { axes, iterations, springs: Springs::default(), arc }
     }
 
@@ -152,7 +152,7 @@ impl Statics {
     ) -> Result<Result<T, Lost>, Error> {
         self.iterations.begin_step();
         bring_state(world)?;
-        self.iterations.kept.keep(world);
+        self.iterations.kept.keep(world, &self.axes);
         world.insert_resource(TrialForces { trying: true, ..TrialForces::default() });
         let found = seek(self, world);
         world.remove_resource::<TrialForces>();
@@ -160,7 +160,7 @@ impl Statics {
             springs.forces = SpringForces::Stepped;
         }
         if !found.as_ref().is_ok_and(stays) {
-            self.iterations.kept.put_back(world, |_| true);
+            self.iterations.kept.put_back(world, &self.axes);
         }
         send_state(world)?;
         self.iterations.end_step();
@@ -299,7 +299,7 @@ fn prepared<'a, 'w>(
 /// Begins where bodies stand, without inertia.
 fn begin(space: &mut Workspace, motion: &mut Motion) {
     motion.rate = 0.0;
-    space.begin(&Formula::of_rest());
+    space.begin();
 }
 
 /// That a path was not followed to its end.

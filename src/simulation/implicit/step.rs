@@ -14,7 +14,7 @@ use super::springs::Springs;
 use super::step_control::StepControl;
 use super::trial::Trial;
 use super::vectors::{none, resize};
-use super::work::Works;
+use super::work::add_work;
 use crate::components::*;
 use crate::error::{Criterion, Error};
 use crate::observation::Observer;
@@ -30,7 +30,8 @@ pub(in crate::simulation) struct Implicit {
     axes: Axes,
     iterations: Iterations,
     springs: Springs,
-    works: Option<Works>,
+    /// Whether work is added up.
+    works: bool,
     control: Option<StepControl>,
 }
 
@@ -54,7 +55,7 @@ impl Implicit {
         let axes = Axes::of(world);
         let settings = Settings { formula: Formula::of(scheme), newton, tolerance, budget };
         let iterations = Iterations::new(settings, preconditioner, &axes, world);
-        let works = scene.output.energies_every.map(|_| Works::of(&axes));
+        let works = scene.output.energies_every.is_some();
         let control = adaptive.map(|asked| StepControl::of(asked, step, &axes, world));
         Some(Self { axes, iterations, springs: Springs::default(), works, control })
     }
@@ -88,13 +89,7 @@ impl Implicit {
             _ => format!("at most {newton} Newton iterations, to a residual of {tolerance} of all forces"),
         };
         let lengths = self.control.as_ref().map_or(String::new(), |control| format!("; {}", control.in_words()));
-        if let Some(works) = &mut self.works {
-            works.begin(world, &self.axes);
-        }
-        let of_works = self.works.as_ref().map_or(0, Works::bytes);
-        let mut in_use = self.iterations.in_use(format!("{scheme}: {iterations}{lengths}"), &self.axes, world, passes);
-        in_use.held.push(("forces at the beginning of a step, for energies", of_works as u64));
-        in_use
+        self.iterations.in_use(format!("{scheme}: {iterations}{lengths}"), &self.axes, world, passes)
     }
 
     /// Takes the step that begins at the clock's, up to the loads at its end. Where that is not found, or its error is
@@ -104,7 +99,7 @@ impl Implicit {
         let told = self.iterations.report;
         let clock = *world.resource::<Clock>();
         bring_state(world)?;
-        self.iterations.kept.keep(world);
+        self.iterations.kept.keep(world, &self.axes);
         let found = self.find(world, passes, &clock);
         world.resource_mut::<Clock>().step = clock.step;
         set_trying(world, false);
@@ -114,7 +109,7 @@ impl Implicit {
             _ => false,
         };
         if found.is_err() || back {
-            self.iterations.kept.put_back(world, |_| true);
+            self.iterations.kept.put_back(world, &self.axes);
             self.axes.put_back(world, &self.iterations.motion);
         }
         send_state(world)?;
@@ -143,22 +138,19 @@ impl Implicit {
         let Self { axes, iterations, springs, works, control } = self;
         let (h, formula) = (clock.time_step, iterations.settings.formula);
         let mut trial = Trial { world, passes, axes, springs, step: clock.step, count: 0, elsewhere: false };
-        let Iterations { motion, space, .. } = &mut *iterations;
+        let Iterations { motion, space, kept, .. } = &mut *iterations;
         axes.read(trial.world, motion);
         if clock.step == 0 {
             begin(&mut trial, motion, &mut space.net, &formula)?;
+            kept.forces.read(trial.world, axes);
         }
         let times = [clock.time_at(clock.step), clock.time_at(clock.step + 1)];
         trial.world.resource_mut::<Signals>().evaluate((times[1], times[1]), times);
         trial.boundary()?;
         Springs::seek(trial.world)?;
-        if let Some(works) = works {
-            works.begin(trial.world, axes);
-        }
-        trial.net(&mut space.net);
         held_axes(trial.world, axes, motion, &mut space.to_go);
         let grasped = Grasped::hold(trial.world, axes, motion, &mut space.to_go);
-        space.begin(&formula);
+        space.begin();
         // loads are those of the end
         trial.world.resource_mut::<Clock>().step += 1;
         set_trying(trial.world, true);
@@ -166,15 +158,15 @@ impl Implicit {
         let found = newton.solve();
         let mut trial = newton.trial;
         let taken = match &found {
-            Ok(found) => iterations.takes(control.as_mut(), h, found),
+            Ok(found) => iterations.takes(control.as_mut(), h, found, (axes, trial.world)),
             Err(_) => false,
         };
         if taken {
             keep_forces(&mut trial, h, iterations)?;
             let place = iterations.place(h);
             grasped.note(trial.world, &place, &iterations.space.net);
-            if let Some(works) = works {
-                works.end(trial.world, axes, &place);
+            if *works {
+                add_work(trial.world, axes, &iterations.kept.forces, &place);
             }
             place.arrive(axes, trial.world);
         }
@@ -190,13 +182,14 @@ fn set_trying(world: &mut World, trying: bool) {
 }
 
 /// Forces and accelerations at the beginning of the motion.
-fn begin(trial: &mut Trial<'_>, motion: &mut Motion, net: &mut Reals, formula: &Formula) -> Result<(), Lost> {
+fn begin(trial: &mut Trial<'_>, motion: &Motion, net: &mut Reals, formula: &Formula) -> Result<(), Lost> {
     trial.world.resource_mut::<Signals>().evaluate((0.0, 0.0), [0.0, 0.0]);
     trial.present_forces(net)?;
-    if formula.needs_acceleration() {
-        for axis in (0..net.len()).filter(|&axis| motion.free[axis]) {
+    for (body, range) in trial.axes.each().filter(|_| formula.needs_acceleration()) {
+        let Some(mut accelerations) = trial.world.get_mut::<Acceleration>(body) else { continue };
+        for axis in range.clone().filter(|&axis| motion.free[axis]) {
             let forces = net.get(axis) + motion.damping(axis) * motion.velocity(axis);
-            motion.a.set(axis, -forces / motion.mass.get(axis / 3));
+            accelerations.set(axis - range.start, -forces / motion.mass.get(axis / 3));
         }
     }
     Ok(())
@@ -232,7 +225,7 @@ fn keep_forces(trial: &mut Trial<'_>, h: f64, iterations: &mut Iterations) -> Re
     if iterations.kept.has_memories() || notes || touches || trial.elsewhere {
         set_trying(trial.world, false);
         // forces that were no numbers are in them
-        iterations.kept.put_back(trial.world, |column| column.subject == Subject::Memory);
+        iterations.kept.put_memories_back(trial.world);
         let Iterations { settings, motion, space: Workspace { correction, net, .. }, .. } = iterations;
         let place = Place { formula: &settings.formula, h, motion, correction, beyond: None };
         trial.noted_forces(&place, net)?;

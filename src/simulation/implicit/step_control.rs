@@ -211,16 +211,16 @@ fn extent(world: &World, body: Entity) -> f64 {
 
 /// The error of a step (m) that leads to a place, and how far it leads from rest (m): root mean squares over
 /// mass.
-pub(super) fn error_and_reach(place: &Place<'_>) -> [f64; 2] {
+pub(super) fn error_and_reach(place: &Place<'_>, axes: &Axes, world: &World) -> [f64; 2] {
     let Place { formula, h, motion, .. } = place;
     let (mut mass, mut error, mut reach) = (0.0, 0.0, 0.0);
-    for axis in 0..motion.free.len() {
+    for (axis, before) in axes.accelerations(world).enumerate() {
         let own = motion.mass.get(axis / 3);
         // three axes are one node
         mass += own / 3.0;
         reach += own * place.displacement(axis).powi(2);
         if motion.free[axis] {
-            error += own * formula.local_error(*h, [motion.acceleration(axis), place.arrival(axis).1]).powi(2);
+            error += own * formula.local_error(*h, [before, place.arrival(axis, before).1]).powi(2);
         }
     }
     let mean = |sum: f64| if mass > 0.0 { (sum / mass).sqrt() } else { 0.0 };

@@ -1,87 +1,61 @@
 //! Work in implicit steps, and what their formula takes.
 
 use super::axes::Axes;
+use super::forces_before::ForcesBefore;
 use super::place::Place;
-use super::vectors::{copy_to, none, resize};
 use crate::components::*;
 use bevy_ecs::prelude::*;
 
-/// Forces at the beginning of a step (N): F and R.
-pub(super) struct Works {
-    internal: Reals,
-    external: Reals,
-}
-
-impl Works {
-    /// Of no step yet.
-    pub fn of(axes: &Axes) -> Self {
-        Self { internal: none(axes.precision()), external: none(axes.precision()) }
-    }
-
-    /// Keeps the forces at the beginning of a step.
-    pub fn begin(&mut self, world: &World, axes: &Axes) {
-        let Self { internal, external } = self;
-        resize(internal, axes.len());
-        resize(external, axes.len());
-        for (body, range) in axes.each() {
-            if let Some(force) = world.get::<InternalForce>(body) {
-                copy_to(internal, range.start, force);
+/// Adds up what a step did. Forces work with the mean of those at both ends: of linear bodies that is what they
+/// store. What is missing then to the change of kinetic energy of a free axis went into the formula: implicit Euler
+/// takes ½ M Δv² + ½ Δu·ΔF, less what a change of loads gives.
+pub(super) fn add_work(world: &mut World, axes: &Axes, before: &ForcesBefore, place: &Place<'_>) {
+    let motion = place.motion;
+    let mut columns = world.query::<(
+        &mut Work,
+        Option<&mut SchemeLoss>,
+        Option<&InternalForce>,
+        Option<&ExternalForce>,
+        Option<&Acceleration>,
+    )>();
+    for (body, range) in axes.each() {
+        let mut lost = vec![0.0; range.len() / 3];
+        let Ok((mut work, loss, internal, external, accelerations)) = columns.get_mut(world, body) else { continue };
+        let of = |column: Option<&Reals>, at: usize| column.map_or(0.0, |column| column.get(at));
+        let (internal, external) = (internal.map(|force| &force.0), external.map(|force| &force.0));
+        let accelerations = accelerations.map(|column| &column.0);
+        for axis in range.clone() {
+            let (at, node) = (axis - range.start, (axis - range.start) / 3);
+            let (moved, first) = (place.moved(axis), motion.velocity(axis));
+            let velocity = place.arrival(axis, of(accelerations, at)).0;
+            let of_loads = 0.5 * (before.external.get(axis) + of(external, at)) * moved;
+            let of_elements = 0.5 * (before.internal.get(axis) + of(internal, at)) * moved;
+            let damped = motion.damping(axis) * 0.5 * (velocity + first) * moved;
+            let mut add = |number: usize, part: f64| {
+                let place = WORK_NUMBERS * node + number;
+                let sum = work.get(place) + part;
+                work.set(place, sum);
+            };
+            let is_held = motion.is_held(axis);
+            if motion.free[axis] || is_held {
+                add(0, of_loads);
+                add(1, damped);
+                add(3, of_elements);
             }
-            if let Some(force) = world.get::<ExternalForce>(body) {
-                copy_to(external, range.start, force);
+            if is_held {
+                add(2, of_elements - of_loads + damped);
+            }
+            if motion.free[axis] {
+                let mass = motion.mass.get(axis / 3);
+                let kinetic = 0.5 * mass * (velocity * velocity - first * first);
+                lost[at / 3] += of_loads - of_elements - damped - kinetic;
             }
         }
-    }
-
-    /// Their bytes.
-    pub fn bytes(&self) -> usize {
-        self.internal.bytes().len() + self.external.bytes().len()
-    }
-
-    /// Adds up what a step did. Forces work with the mean of those at both ends: of linear bodies that is what they
-    /// store. What is missing then to the change of kinetic energy of a free axis went into the formula: implicit Euler
-    /// takes ½ M Δv² + ½ Δu·ΔF, less what a change of loads gives.
-    pub fn end(&mut self, world: &mut World, axes: &Axes, place: &Place<'_>) {
-        let motion = place.motion;
-        let mut columns =
-            world.query::<(&mut Work, Option<&mut SchemeLoss>, Option<&InternalForce>, Option<&ExternalForce>)>();
-        for (body, range) in axes.each() {
-            let mut lost = vec![0.0; range.len() / 3];
-            let Ok((mut work, loss, internal, external)) = columns.get_mut(world, body) else { continue };
-            let of = |column: Option<&Reals>, at: usize| column.map_or(0.0, |column| column.get(at));
-            let (internal, external) = (internal.map(|force| &force.0), external.map(|force| &force.0));
-            for axis in range.clone() {
-                let (at, node) = (axis - range.start, (axis - range.start) / 3);
-                let (moved, before, velocity) = (place.moved(axis), motion.velocity(axis), place.arrival(axis).0);
-                let of_loads = 0.5 * (self.external.get(axis) + of(external, at)) * moved;
-                let of_elements = 0.5 * (self.internal.get(axis) + of(internal, at)) * moved;
-                let damped = motion.damping(axis) * 0.5 * (velocity + before) * moved;
-                let mut add = |number: usize, part: f64| {
-                    let place = WORK_NUMBERS * node + number;
-                    let sum = work.get(place) + part;
-                    work.set(place, sum);
-                };
-                let is_held = motion.is_held(axis);
-                if motion.free[axis] || is_held {
-                    add(0, of_loads);
-                    add(1, damped);
-                    add(3, of_elements);
-                }
-                if is_held {
-                    add(2, of_elements - of_loads + damped);
-                }
-                if motion.free[axis] {
-                    let mass = motion.mass.get(axis / 3);
-                    let kinetic = 0.5 * mass * (velocity * velocity - before * before);
-                    lost[at / 3] += of_loads - of_elements - damped - kinetic;
-                }
-            }
-            if let Some(mut loss) = loss {
-                lost.iter().enumerate().for_each(|(node, part)| {
-                    let sum = loss.get(node) + part;
-                    loss.set(node, sum);
-                });
-            }
+        if let Some(mut loss) = loss {
+            lost.iter().enumerate().for_each(|(node, part)| {
+                let sum = loss.get(node) + part;
+                loss.set(node, sum);
+            });
         }
     }
 }

@@ -7,6 +7,7 @@ use crate::backend::cpu::Cpu;
 use crate::components::*;
 use crate::math::Scalar;
 use glam::{DMat3, DVec3};
+use half::bf16;
 use std::collections::BTreeMap;
 
 /// B = the inverses of the diagonal blocks of D + c K, K that of bodies at rest: found once, and again when some
@@ -29,8 +30,10 @@ pub(in crate::simulation) struct BlockJacobi {
     springs: BTreeMap<usize, DMat3>,
 }
 
-/// Symmetric 3×3 matrices, a node each. Those of a run in f32 are in f32, by their diagonals and yx, zx and zy.
+/// Symmetric 3×3 matrices, a node each. Those of a run in f32 are in f32, by their diagonals and yx, zx and zy; the
+/// stiffness at rest, of which a preconditioner needs no more than two digits, is in halves of these.
 enum Blocks {
+    Half(Vec<[bf16; 6]>),
     F32(Vec<[f32; 6]>),
     F64(Vec<DMat3>),
 }
@@ -50,8 +53,17 @@ impl Blocks {
         }
     }
 
+    /// The same, of a stiffness at rest.
+    fn of_rest(precision: Precision, nodes: usize) -> Self {
+        match precision {
+            Precision::F32 => Self::Half(vec![[bf16::ZERO; 6]; nodes]),
+            Precision::F64 => Self::F64(vec![DMat3::ZERO; nodes]),
+        }
+    }
+
     fn len(&self) -> usize {
         match self {
+            Self::Half(blocks) => blocks.len(),
             Self::F32(blocks) => blocks.len(),
             Self::F64(blocks) => blocks.len(),
         }
@@ -59,6 +71,7 @@ impl Blocks {
 
     fn bytes(&self) -> usize {
         match self {
+            Self::Half(blocks) => size_of_val(&blocks[..]),
             Self::F32(blocks) => size_of_val(&blocks[..]),
             Self::F64(blocks) => size_of_val(&blocks[..]),
         }
@@ -66,17 +79,15 @@ impl Blocks {
 
     fn set(&mut self, node: usize, matrix: DMat3) {
         match self {
-            Self::F32(blocks) => {
-                let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
-                let beside = [0.5 * (x.y + y.x), 0.5 * (x.z + z.x), 0.5 * (y.z + z.y)];
-                blocks[node] = [x.x, y.y, z.z, beside[0], beside[1], beside[2]].map(|entry| entry as f32);
-            }
+            Self::Half(blocks) => blocks[node] = entries(matrix).map(bf16::from_f32),
+            Self::F32(blocks) => blocks[node] = entries(matrix),
             Self::F64(blocks) => blocks[node] = matrix,
         }
     }
 
     fn get(&self, node: usize) -> DMat3 {
         match self {
+            Self::Half(blocks) => widened(&blocks[node].map(bf16::to_f32)),
             Self::F32(blocks) => widened(&blocks[node]),
             Self::F64(blocks) => blocks[node],
         }
@@ -87,6 +98,9 @@ impl Blocks {
         with_numbers!(z, T => {
             let nodes = z.slice_mut::<T>().as_chunks_mut::<3>().0.iter_mut();
             match self {
+                Self::Half(blocks) => {
+                    nodes.zip(blocks).for_each(|(z, block)| *z = times(widened(&block.map(bf16::to_f32)), *z));
+                }
                 Self::F32(blocks) => nodes.zip(blocks).for_each(|(z, block)| *z = times(widened(block), *z)),
                 Self::F64(blocks) => nodes.zip(blocks).for_each(|(z, block)| *z = times(*block, *z)),
             }
@@ -96,6 +110,12 @@ impl Blocks {
 
 fn times<T: Scalar>(block: DMat3, r: [T; 3]) -> [T; 3] {
     (block * DVec3::from(r.map(T::to_f64))).to_array().map(T::from_f64)
+}
+
+fn entries(matrix: DMat3) -> [f32; 6] {
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    let beside = [0.5 * (x.y + y.x), 0.5 * (x.z + z.x), 0.5 * (y.z + z.y)];
+    [x.x, y.y, z.z, beside[0], beside[1], beside[2]].map(|entry| entry as f32)
 }
 
 fn widened(block: &[f32; 6]) -> DMat3 {
@@ -197,7 +217,7 @@ impl BlockJacobi {
     /// Follows an operator of which this has changed, and the springs that touch.
     pub fn take(&mut self, operator: &Operator<'_>, changed: Changed) {
         if !self.sums.is_empty() {
-            self.stiffness = Blocks::zeros(self.precision, self.sums.len());
+            self.stiffness = Blocks::of_rest(self.precision, self.sums.len());
             let sums = std::mem::take(&mut self.sums).into_iter().enumerate();
             sums.for_each(|(node, sum)| self.stiffness.set(node, sum));
         }
