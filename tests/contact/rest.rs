@@ -266,8 +266,8 @@ fn hard_cases_rest_where_relaxation_has_them() {
 }
 
 /// A column that a closed tool holds at its foot gives way where one with a clamped foot does (π² E I/(4 L²)), and not
-/// where springs of a ring guide its head as well (some eight times as much). Pseudo-steps find rest at the higher load,
-/// as they do without what holds and touches.
+/// where springs of a ring guide its head as well (some eight times as much). Pseudo-steps find rest at the higher
+/// load, as they do without what holds and touches.
 #[test]
 fn whether_rest_lasts_is_asked_with_what_holds_and_touches() {
     let critical = std::f64::consts::PI.powi(2) * 3e3 * 1e-8 / 12.0 / (4.0 * 0.01);
