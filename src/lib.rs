@@ -12,8 +12,6 @@ pub mod skins;
 pub mod snapshot;
 #[path = "../systems/mod.rs"]
 pub mod systems;
-#[doc(hidden)]
-pub mod tools;
 
 // what the other crates of the workspace and the tests see into: no version keeps its names and types
 #[doc(hidden)]
@@ -40,6 +38,8 @@ pub use serde;
 /// Meshes: generators, files, topology.
 #[doc(inline)]
 pub use sinew_mesh as mesh;
+#[doc(hidden)]
+pub use sinew_tools as tools;
 
 pub use backend::gpu::{Host, NoGpu};
 pub use error::{Error, GpuFailure, Instability, NotConverged, NotUnloaded};

@@ -11,7 +11,6 @@ mod real;
 mod rows;
 mod simd;
 mod tensor;
-mod triangle;
 mod trigonometry;
 
 pub use real::{Real, Scalar};
@@ -30,6 +29,6 @@ pub use rows::{Rows, Scratch};
 #[doc(hidden)]
 pub use simd::{F32s, F64s, LANES, lane_place};
 #[doc(hidden)]
-pub use tensor::{dot, dot_plus, minor};
+pub use sinew_mesh::OnTriangle;
 #[doc(hidden)]
-pub use triangle::OnTriangle;
+pub use tensor::{dot, dot_plus, minor};

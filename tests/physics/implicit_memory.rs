@@ -35,7 +35,9 @@ fn bytes(solver: &str, elements: &str, cells: u32, held: bool) -> (u64, u64, Vec
 fn implicit_steps_hold_less_than_twice_the_bytes_of_explicit_ones() {
     let linear = ["Tet4", "Hex8", "Hex8MeanDilatation", "Wedge6"].map(|elements| (elements, 14, true));
     let all = linear.into_iter().chain([("Tet10", 7, true), ("Hex8", 14, false)]);
-    for ((elements, cells, held), scheme) in all.flat_map(|of| ["Euler", "GeneralizedAlpha()"].map(|scheme| (of, scheme))) {
+    for ((elements, cells, held), scheme) in
+        all.flat_map(|of| ["Euler", "GeneralizedAlpha()"].map(|scheme| (of, scheme)))
+    {
         let (explicit, nothing, _) = bytes("Explicit", elements, cells, held);
         let (columns, own, all) = bytes(&format!("Implicit(scheme: {scheme})"), elements, cells, held);
         let nodes = (if elements == "Tet10" { 2 * cells + 1 } else { cells + 1 }).pow(3);

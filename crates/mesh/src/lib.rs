@@ -30,6 +30,7 @@ pub mod soundness;
 mod surface;
 #[doc(hidden)]
 pub mod topology;
+mod triangle;
 mod triangles;
 #[cfg(feature = "files")]
 mod vtk;
@@ -61,6 +62,8 @@ pub use surface::SurfaceFace;
 pub use surface::nodes_of_face;
 pub use topology::CellKind;
 #[doc(hidden)]
+#[doc(hidden)]
+pub use triangle::OnTriangle;
 pub use triangles::{EdgeFault, SurfaceError, Triangles};
 
 use glam::DVec3;

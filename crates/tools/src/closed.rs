@@ -1,7 +1,7 @@
 //! Closed surfaces, with the normals by which inside and outside are told apart.
 
-use crate::mesh::{SurfaceError, Triangles};
 use glam::DVec3;
+use sinew_mesh::{SurfaceError, Triangles};
 use std::collections::HashMap;
 
 /// Lower than this part of its longest side a triangle has no normal.

@@ -2,8 +2,8 @@
 
 use super::super::{DistanceGrid, Shape, Solid};
 use super::{assert_closed, volume};
-use crate::mesh::{FilePosition, MeshError, Triangles};
 use glam::DVec3;
+use sinew_mesh::{FilePosition, MeshError, Triangles};
 
 fn tube() -> Triangles {
     let shape = Shape::Tube { length: 12e-3, inner: 2e-3, outer: 3e-3, bevel: 30.0 };

@@ -1,7 +1,7 @@
 //! The nearest triangle of many, by a tree of boxes.
 
-use crate::math::OnTriangle;
 use glam::DVec3;
+use sinew_mesh::OnTriangle;
 
 /// Triangles in a leaf.
 const LEAF: usize = 4;
@@ -16,10 +16,10 @@ struct Branch {
 }
 
 /// How much farther than the nearest may be (relative) what is taken for it where that need not be exact.
-pub(crate) const SLACK: f64 = 2e-3;
+pub const SLACK: f64 = 2e-3;
 
 /// A tree over triangles.
-pub(crate) struct Tree {
+pub struct Tree {
     branches: Vec<Branch>,
     /// In the order of leaves.
     corners: Vec<[DVec3; 3]>,
@@ -29,7 +29,7 @@ pub(crate) struct Tree {
 
 /// What is nearest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Nearest {
+pub struct Nearest {
     /// The square of the distance (m²).
     pub square: f64,
     /// The place of the triangle in the tree.

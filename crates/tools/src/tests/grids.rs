@@ -3,8 +3,8 @@
 use super::super::closed::Closed;
 use super::super::{DistanceGrid, Geometry, Shape, Solid};
 use super::{corners, place, to_triangles, winding};
-use crate::mesh::{SurfaceError, Triangles};
 use glam::DVec3;
+use sinew_mesh::{SurfaceError, Triangles};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 

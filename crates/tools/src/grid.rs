@@ -3,9 +3,9 @@
 use super::closed::Closed;
 use super::form::{FAR, NEAR};
 use super::tree::{SLACK, Tree};
-use crate::mesh::{SurfaceError, Triangles};
 use glam::{DVec3, UVec3};
 use rayon::prelude::*;
+use sinew_mesh::{SurfaceError, Triangles};
 
 /// Cells of the grid between it and the surface, on all sides.
 const MARGIN: f64 = 2.0;

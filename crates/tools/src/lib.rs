@@ -11,7 +11,9 @@ mod solid;
 mod surface;
 #[cfg(test)]
 mod tests;
-pub(crate) mod tree;
+// what carries skins finds where they are by it
+#[doc(hidden)]
+pub mod tree;
 
 pub use form::Form;
 pub use grid::DistanceGrid;

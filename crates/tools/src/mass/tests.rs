@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
-use crate::tools::Solid;
+use crate::Solid;
 use std::f64::consts::PI;
 
 fn of(shape: Shape, rounding: f64) -> (f64, DVec3, DMat3) {
@@ -44,8 +44,8 @@ fn volumes_and_moments_are_those_of_closed_forms() {
 fn a_grid_weighs_what_its_triangles_enclose() {
     let solid = Solid::new(Shape::Box { size: DVec3::new(0.02, 0.03, 0.04) }, 0.0).unwrap();
     let (points, triangles) = solid.surface(16, 1.0);
-    let surface = crate::mesh::Triangles { points, triangles, ..Default::default() };
-    let grid = crate::tools::DistanceGrid::new(&surface, 5e-4).unwrap();
+    let surface = sinew_mesh::Triangles { points, triangles, ..Default::default() };
+    let grid = crate::DistanceGrid::new(&surface, 5e-4).unwrap();
     let (volume, center, moments) = Geometry::Grid(std::sync::Arc::new(grid)).volume_moments().unwrap();
     // edges are blunt by a fraction of a cell
     near("volume", volume, 2.4e-5, 2e-3);
