@@ -138,6 +138,7 @@ impl DistanceGrid {
     /// φ, the signed distance (m) from a place in the tool's frame to the surface, negative inside, and the direction
     /// of its gradient, a unit vector. Outside the grid it is the distance to where the surface is nearest to the
     /// nearest place of the grid: no less than it is, and never inside.
+    #[inline]
     pub fn distance(&self, y: DVec3) -> (f64, DVec3) {
         let y = y.clamp(DVec3::splat(-FAR), DVec3::splat(FAR));
         let cells = (self.counts - 1).as_dvec3();

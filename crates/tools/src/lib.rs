@@ -40,6 +40,7 @@ pub enum Geometry {
 impl Geometry {
     /// φ, the signed distance (m) from a place in the tool's frame to the surface, negative inside, and the direction
     /// of its gradient, a unit vector: see [`Solid::distance`] and [`DistanceGrid::distance`].
+    #[inline]
     pub fn distance(&self, y: DVec3) -> (f64, DVec3) {
         match self {
             Self::Analytic(solid) => solid.distance(y),

@@ -173,6 +173,7 @@ impl Solid {
     /// unit vector. Where several points of the surface are as near, the first in a fixed order is taken.
     ///
     /// Outside a bevelled tip, |φ| may be less than the distance to the bevel's edges.
+    #[inline]
     pub fn distance(&self, y: DVec3) -> (f64, DVec3) {
         self.form.distance(y)
     }
