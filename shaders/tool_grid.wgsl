@@ -1,4 +1,4 @@
-// Signed distances on grids, linear along each axis between points; twin of src/tools/grid.rs.
+// Signed distances on grids, linear along each axis between points; twin of crates/tools/src/grid.rs.
 struct ToolGrid {
     x: f32, // the first point (m)
     y: f32,

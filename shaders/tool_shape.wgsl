@@ -1,4 +1,4 @@
-// Signed distances to shapes of tools; twin of src/tools/form.rs.
+// Signed distances to shapes of tools; twin of crates/tools/src/form.rs.
 
 // The shape that is smaller by the rounding all round.
 struct ToolShape {

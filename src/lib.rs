@@ -69,7 +69,9 @@ pub mod prelude {
     #[doc(no_inline)]
     pub use crate::components::{Clock, Displacement, DisplacementIncrement, ExternalForce, Mass, RestPosition};
     #[doc(no_inline)]
-    pub use crate::systems::{Phase, Registry, System};
+    pub use crate::systems::{
+        Before, Cpu, ForceSlopes, NodeColumns, NodeSystem, NodesAtRest, Phase, Registry, SimdScalar, System,
+    };
     #[doc(no_inline)]
     pub use crate::{BackendChoice, Error, NodeSet, Options, SceneFile, Simulation, bevy_ecs, glam, serde};
     #[doc(no_inline)]

@@ -84,7 +84,9 @@ fn given_out() -> BTreeMap<String, String> {
 
 /// Modules and crates of the repository that code names.
 fn named(code: &str) -> Vec<String> {
-    let crates = ["pictures", "studies"].into_iter().filter(|name| code.contains(&format!("sinew_{name}::")));
+    let parts = parts();
+    let crates = parts.iter().filter(|part| part.starts_with("crates/")).map(|part| module(part));
+    let crates = crates.filter(|name| code.contains(&format!("sinew_{name}::")));
     let given_out = given_out();
     let modules = imports(code).into_iter().map(|name| given_out.get(&name).cloned().unwrap_or(name));
     modules.chain(crates.map(String::from)).collect()
@@ -133,6 +135,8 @@ fn an_import_that_runs_the_other_way_is_found() {
     assert_eq!(named_too_early(&parts, "src/backend", through_the_root), ["simulation"]);
     let pictures = "use sinew::mesh::Mesh;\nuse sinew_studies::hard::CASES;";
     assert_eq!(named_too_early(&parts, "crates/pictures", pictures), ["studies"]);
+    let below = "pub use sinew_tools::Shape;";
+    assert_eq!(named_too_early(&parts, "src/math", below), ["tools"]);
 }
 
 /// Comments of code and scenes, and prose of pages that is no table, no code and no lone link.

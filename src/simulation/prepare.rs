@@ -109,7 +109,7 @@ fn clock(
             Clock { relaxation: Some(relaxation), springs, ..Clock::with_step(scene.scene.duration * ramp_rate) };
         return Some((clock, Stability::of_rest(bound), max_steps));
     }
-    if let Solver::Implicit { step, adaptive, .. } = scene.scene.solver {
+    if let Solver::Implicit { scheme, step, adaptive, .. } = scene.scene.solver {
         let bound = stable_step::found_bound(world, diagnostics)?;
         let steps = scene.scene.duration / step;
         // chosen steps end where the scene does
@@ -117,7 +117,7 @@ fn clock(
         let touches = !scene.scene.contacts.is_empty() || !scene.scene.attachments.is_empty();
         let springs = touches.then_some(SolvedSprings { step: bound.time_step, forces: SpringForces::Tried });
         let clock = Clock { velocities_at_ends: true, springs, ..Clock::with_step(step) };
-        return Some((clock, Stability::of_implicit(bound, step), steps));
+        return Some((clock, Stability::of_implicit(bound, step, scheme), steps));
     }
     let (stability, time_step, steps) = stable_step::choose(scene, known, world, diagnostics)?;
     Some((Clock::with_step(time_step), stability, steps))

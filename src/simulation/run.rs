@@ -353,12 +353,12 @@ impl ScheduledPass {
         self.reads.contains(&name)
     }
 
-    /// Runs a host system if this is one of its steps.
     /// Whether it is run in a step, if the host runs it.
     fn is_due(&self, step: u64) -> bool {
         matches!(&self.job, Job::Host { interval, .. } if interval.is_due(step))
     }
 
+    /// Runs a host system if this is one of its steps.
     pub(super) fn run_on_host(&mut self, step: u64, world: &mut World) -> Result<(), Error> {
         if !self.is_due(step) {
             return Ok(());

@@ -14,11 +14,14 @@ use crate::assembly::{StableStep, stable_step};
 use crate::backend::device::bring_to_host;
 use crate::components::column_is;
 use crate::error::Error;
-use crate::scene::schema::{Constraint, Curve, InitialState, Inversion, Scene, StepBound, WhenUnstable};
+use crate::scene::schema::{
+    Constraint, Curve, ImplicitScheme, InitialState, Inversion, Scene, StepBound, WhenUnstable,
+};
 use crate::scene::{Diagnostics, SceneFile};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use serde::Serialize;
+use std::f64::consts::TAU;
 
 /// The true limit is known to the share of half of this.
 pub(super) const ACCURACY: f64 = 0.04;
@@ -75,13 +78,20 @@ impl Stability {
     }
 
     /// Of implicit steps, which are stable at any length.
-    pub(super) fn of_implicit(bound: StableStep, step: f64) -> Self {
-        Self {
-            step,
-            found_from: "scene",
-            because: "implicit steps are as long as the scene wants them, or as their errors allow".into(),
-            ..Self::of_rest(bound)
-        }
+    pub(super) fn of_implicit(bound: StableStep, step: f64, scheme: ImplicitScheme) -> Self {
+        let leaves = match scheme {
+            ImplicitScheme::Euler => "at most 0.7 of it a step".to_string(),
+            ImplicitScheme::GeneralizedAlpha { high_frequencies } => {
+                format!("{high_frequencies} of the highest frequencies a step")
+            }
+        };
+        let because = format!(
+            "implicit ones are stable at any length; this is {:.0} times what explicit steps of the stiffest element may \
+             be; what swings faster than {:.3} Hz it does not resolve, and leaves {leaves}",
+            step / bound.time_step,
+            1.0 / (TAU * step)
+        );
+        Self { step, found_from: "scene", because, ..Self::of_rest(bound) }
     }
 
     /// Of a static analysis.

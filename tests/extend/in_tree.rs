@@ -56,8 +56,8 @@ fn text(file: &str) -> String {
 
 /// Files below the engine's folders, by their paths, with their code: no comments, no tests.
 fn engine() -> Vec<(String, String)> {
-    let mut waiting: Vec<PathBuf> =
-        ["src", "systems", "crates/mesh/src", "crates/cli/src"].iter().map(|folder| root().join(folder)).collect();
+    let folders = ["src", "systems", "crates/mesh/src", "crates/tools/src", "crates/cli/src"];
+    let mut waiting: Vec<PathBuf> = folders.iter().map(|folder| root().join(folder)).collect();
     let mut found = Vec::new();
     while let Some(path) = waiting.pop() {
         let name = path.strip_prefix(root()).unwrap().display().to_string();

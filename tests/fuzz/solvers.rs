@@ -21,7 +21,15 @@ impl Solvers {
     /// The scene solved so, its implicit steps of a length (s).
     pub fn put_into(mut self, text: &str, step: f64, temper: Temper) -> String {
         if text.contains("analysis: Static(") {
-            return text.replacen("analysis: Static(", "analysis: Static(method: Newton, ", 1);
+            let r = &mut self.rng;
+            let arc = match r.u8(..4) {
+                0 => {
+                    let (first, longest) = (size(r, 1e-3, 1.0), size(r, 1e-5, 0.1));
+                    format!("arc: (first: {first:?}, longest: {longest:?}, points: {}), ", r.u64(1..30))
+                }
+                _ => String::new(),
+            };
+            return text.replacen("analysis: Static(", &format!("analysis: Static(method: Newton, {arc}"), 1);
         }
         let text = match self.rng.bool() {
             true => text.replacen("start: Equilibrium(", "start: Equilibrium(method: Newton, ", 1),
@@ -54,7 +62,14 @@ impl Solvers {
             all.push(format!("preconditioner: {word}"));
         }
         if r.u8(..3) == 0 {
-            all.push(format!("budget: {}", r.u64(1..60)));
+            all.push(format!("budget: {}", r.u64(3..60)));
+        }
+        if r.u8(..4) == 0 {
+            all.push(format!(
+                "adaptive: (tolerance: {:?}, smallest: {:?})",
+                size(r, 1e-5, 0.9),
+                step * size(r, 1e-3, 0.9)
+            ));
         }
         format!("Implicit({})", all.join(", "))
     }

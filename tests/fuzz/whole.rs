@@ -339,7 +339,7 @@ fn try_scenes(kind: Kind) {
     let has_gpu = gpu_or_reason().is_some();
     let (mut found, mut endings) = (Vec::new(), BTreeMap::new());
     for seed in first..first + count {
-        let gpu = has_gpu && kind != Kind::Solvers && seed % GPU_ONE_IN == 0;
+        let gpu = has_gpu && seed % GPU_ONE_IN == 0;
         let tried = std::panic::catch_unwind(|| attempt(seed, kind, gpu));
         let wrong = match tried {
             Ok(Ok(ending)) => {

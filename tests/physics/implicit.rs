@@ -267,6 +267,30 @@ fn budgets_bound_passes_and_tell_what_is_left() {
     assert!(summary.guards.warnings.iter().any(|notice| notice.criterion == "implicit_step"), "{:?}", summary.guards);
 }
 
+/// A cube that falls on stiff springs is searched for along its way by dozens of looks; with a budget there are no
+/// more passes for that than for the rest. What is left is told of, and the cube stays whole.
+#[test]
+fn budgets_bound_the_search_along_a_way_too() {
+    let passes = |budget: &str| {
+        let mut simulation = start(&format!(
+            "(duration: 0.1, solver: Implicit(step: 5e-3, scheme: GeneralizedAlpha(), {budget}),
+            bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3), elements: Tet4), material: \"m\",
+                velocity: (0, 0, -2), translate: (0, 0, 0.02))}},
+            materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e4, poisson: 0.45), damping: 5)}},
+            tools: {{\"table\": (shape: Plane())}}, contacts: [Tool(tool: \"table\", law: Penalty(share: 100))])"
+        ));
+        simulation.finish().unwrap();
+        let counts = simulation.implicit_steps().unwrap();
+        println!("{budget}: {counts:?}");
+        let u = simulation.displacements("b").unwrap();
+        assert!(counts.halvings > 0 && u.iter().all(|u| u.length() < 0.3), "{u:?}");
+        counts.most_passes
+    };
+    let (free, bounded) = (passes(""), passes("budget: 12"));
+    assert!(free > 30, "{free}");
+    assert!(bounded <= 14, "{bounded}");
+}
+
 /// Steps of bodies that have come to rest begin within the tolerance, and leave nothing that needs a word.
 #[test]
 fn steps_at_rest_leave_no_residual_to_speak_of() {
@@ -334,7 +358,8 @@ fn what_implicit_steps_cannot_do_is_refused_by_name() {
     let cases = [
         ("Implicit(step: 0)", "", "`step` must be above 0"),
         ("Implicit(newton: 0)", "", "`newton` must be at least 1"),
-        ("Implicit(budget: 0)", "", "`budget` must be at least 1"),
+        ("Implicit(budget: 0)", "", "`budget` must be at least 3"),
+        ("Implicit(budget: 2)", "", "`budget` must be at least 3"),
         ("Implicit(tolerance: 1)", "", "`tolerance` must be above 0 and below 1"),
         ("Implicit(scheme: GeneralizedAlpha(high_frequencies: 1.5))", "", "`high_frequencies` must be from 0 to 1"),
         ("Implicit(preconditioner: Best)", "", "Best"),

@@ -107,6 +107,8 @@ fn what_it_holds_is_told_before_a_run_and_after() {
     let mut simulation = Simulation::new(&scene_of(&scene, Path::new("scenes")), &options(Precision::F32, 1)).unwrap();
     let told = simulation.explain(&Registry::default()).unwrap();
     println!("{told}");
+    let step = told.time_step.unwrap();
+    assert!(step.contains("times what explicit steps") && step.contains("at most 0.7 of it a step"), "{step}");
     let solver = told.solver.unwrap();
     let line = solver.of.iter().find(|line| line.contains("aggregates")).unwrap();
     let number = line.split(" aggregates").next().unwrap().rsplit(' ').next().unwrap();

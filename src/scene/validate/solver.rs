@@ -6,6 +6,9 @@ use crate::scene::schema::{
 };
 use crate::scene::syntax::Path;
 
+/// Passes that an iteration and the residual before it take at least.
+const LEAST_BUDGET: u64 = 3;
+
 pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
     if scene_.search().is_some_and(|search| search.method == SearchMethod::Newton) {
         let word = if scene_.is_static() { "analysis" } else { "start" };
@@ -36,8 +39,10 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
             .must(&path.name("tolerance"), "above 0 and below 1", show(tolerance))
             .note("it is a share of the forces in a step; 1e-3 when left out");
     }
-    if budget == Some(0) {
-        validator.must(&path.name("budget"), "at least 1", 0).note("left out, a step takes as many passes as it needs");
+    if let Some(budget) = budget.filter(|budget| *budget < LEAST_BUDGET) {
+        validator.must(&path.name("budget"), &format!("at least {LEAST_BUDGET}"), budget).note(
+            "one pass for the residual, one for a product, one where it leads; left out, a step takes what it needs",
+        );
     }
     if let ImplicitScheme::GeneralizedAlpha { high_frequencies } = scheme
         && !(0.0..=1.0).contains(&high_frequencies)

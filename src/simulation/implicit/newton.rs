@@ -31,6 +31,8 @@ const DESCENT: f64 = 0.9;
 const ROUNDING_FROM: u32 = 3;
 /// Newton iterations at least in which prescribed motion may arrive, where the line search holds it back.
 const MOST_MOVES: u32 = 20;
+/// Passes of an iteration at least: a product and a look where it leads; where something is moved as told one more.
+const ITERATION: u64 = 2;
 /// What a solve that looks for a motion without resistance leaves of the residual.
 const THOROUGH: f64 = 1e-4;
 /// Iterations of a linear solve without a budget.
@@ -165,7 +167,7 @@ impl Newton<'_, '_> {
                 size = self.residual();
             }
             let enough = self.settings.tolerance * self.scale(&tried);
-            if iterations == ROUNDING_FROM {
+            if iterations == ROUNDING_FROM && self.left() > 0 {
                 floor = self.rounding()?;
             }
             let enough = enough.max(floor);
@@ -173,7 +175,7 @@ impl Newton<'_, '_> {
             // the linearised step takes its one solve wherever it begins
             let taken = self.settings.newton > 1 || iterations > 0 || size == 0.0;
             let solved = taken && size <= enough && !moves;
-            let ends = iterations >= self.settings.newton && !moves || self.left() == 0;
+            let ends = iterations >= self.settings.newton && !moves || self.left() < ITERATION + u64::from(moves);
             if solved || ends {
                 return Ok(self.left_of([first, size], solved, remaining));
             }

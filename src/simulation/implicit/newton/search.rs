@@ -70,7 +70,8 @@ impl Bracket {
 
 impl Newton<'_, '_> {
     /// Goes along p as far as the residual does less work along it, and where bodies give way along it as far as it
-    /// leads downhill. `size` becomes the norm of the new residual.
+    /// leads downhill. `size` becomes the norm of the new residual. Where no pass is left, what leaves less of it is
+    /// enough, and else it stays where it was.
     pub(super) fn search(&mut self, way: Way, size: &mut f64, enough: f64) -> Result<Tried, Lost> {
         copy(&mut self.space.vectors.image, &self.space.correction);
         self.residual();
@@ -101,17 +102,24 @@ impl Newton<'_, '_> {
                 // of what is moved as told the work may be of either sign, and what slides is rubbed by what presses
                 // it, of which a symmetric tangent does not know: it leads there where less is left
                 let arrives = touches && now <= if moves { DESCENT } else { FALLS } * *size;
-                if now.is_finite() && (descends || arrives || self.settings.newton == 1 || now <= enough) {
+                let enough = now <= enough || self.left() == 0 && now < *size;
+                if now.is_finite() && (descends || arrives || self.settings.newton == 1 || enough) {
                     update(&mut self.space.to_go, |_, left| left * (1.0 - share));
                     *size = now;
                     return Ok(tried);
                 }
             }
             self.report.halvings += 1;
+            if self.left() == 0 {
+                break;
+            }
             share = if touches { bracket.next(share, work) } else { 0.5 * share };
         }
         let Workspace { correction, vectors, .. } = &mut *self.space;
         copy(correction, &vectors.image);
+        if self.left() == 0 {
+            return Ok(self.forces_at_w()?);
+        }
         Err(Lost::Because(format!(
             "no descent after {halvings} halvings of a Newton step, at a residual of {size:.3e} N{}",
             self.what_is_beyond()
