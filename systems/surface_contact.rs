@@ -134,6 +134,8 @@ struct Surface {
     trees: Vec<Tree>,
     lists: Lists,
     crossings: crossings::Crossings,
+    /// Of each node of a body that meets itself its piece, as of all its elements; else empty.
+    pieces: Vec<u32>,
     /// What is near, as long as the lists hold.
     near: Near,
     /// Where the nodes are that are near something (m, from the reference).

@@ -70,6 +70,8 @@ struct Outside {
     triangles: Vec<[u32; 3]>,
     /// Of all nodes of the mesh, outwards.
     normals: Vec<DVec3>,
+    /// Of all nodes of the mesh the pieces that they are of.
+    pieces: Vec<u32>,
     tree: Tree,
 }
 
@@ -81,7 +83,8 @@ impl Outside {
         let triangles: Vec<[u32; 3]> = faces.iter().flat_map(|face| face.triangles()).collect();
         let corners = |number: u32| triangles[number as usize].map(|node| mesh.points[node as usize]);
         let tree = Tree::new(0..triangles.len() as u32, corners);
-        Self { nodes, normals: normals(&mesh.points, &triangles), tree, triangles, mesh }
+        let pieces = mesh.cells.pieces_of_nodes(mesh.points.len());
+        Self { nodes, normals: normals(&mesh.points, &triangles), pieces, tree, triangles, mesh }
     }
 
     fn at(&self, node: u32) -> DVec3 {
@@ -136,7 +139,8 @@ impl Outside {
         let gap = |node: u32| {
             let (at, mut gap) = (self.at(node), f64::INFINITY);
             self.near(at, near, |nodes, normal, nearest| {
-                let looks_back = normal.dot(self.normals[node as usize]) < 0.0;
+                let of_piece = self.pieces[nodes[0] as usize] == self.pieces[node as usize];
+                let looks_back = of_piece && normal.dot(self.normals[node as usize]) < 0.0;
                 // what is behind a thin body is no gap; rounding is nothing
                 if looks_back && !nodes.contains(&node) && normal.dot(at - nearest) >= -1e-6 * near {
                     gap = gap.min(at.distance(nearest));

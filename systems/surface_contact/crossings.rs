@@ -65,7 +65,9 @@ pub(super) fn list(contacts: &mut SurfaceContacts, radius: f64) {
             tree.near(middle, radius + half, |triangle| {
                 for other in sides[triangle as usize] {
                     let Some(met) = edges.get(other as usize).filter(|_| !itself || other > number) else { continue };
+                    let [piece, of_met] = [edge, met].map(|of| surface.pieces.get(of.nodes[0] as usize));
                     let apart = itself
+                        && piece == of_met
                         && (met.nodes.iter().any(|node| edge.nodes.contains(node))
                             || distance(ends(edge, rest), ends(met, rest)) <= near_at_rest);
                     if !apart && distance(of_edge, ends(met, &surface.places)) <= radius {

@@ -25,8 +25,8 @@ const OF_A_STEP: usize = 6;
 pub(super) const MARGIN: f64 = 1e-2;
 
 impl SurfaceContacts {
-    /// How near points and faces of one body are at rest that are never in each other's way (m); nothing where no body
-    /// meets itself.
+    /// How near points and faces of one piece of a body are at rest that are never in each other's way (m); nothing
+    /// where no body meets itself.
     pub fn near_at_rest(&self) -> Option<f64> {
         let itself = (0..self.bodies.len() as u32).filter_map(|body| self.meeting(body, body));
         itself.map(|of| NEAR_AT_REST * (of.thickness + MARGIN * self.edge)).reduce(f64::max)
@@ -166,6 +166,9 @@ fn survey(
             surface.points.push(Point::node(number, surface.nodes.len() as u32));
             surface.nodes.push((number, row));
         }
+        if contacts.near_at_rest().is_some() {
+            surface.pieces.extend(pieces(authoring, &rows));
+        }
     }
     surface.kept = surface.nodes.iter().map(|&(body, row)| kept(body, false, row)).collect();
     surface.kept.extend(of_faces.iter().zip(places).map(|(point, place)| kept(point.body, true, place)));
@@ -198,6 +201,15 @@ fn survey(
     }
 }
 
+/// The pieces that some rows of a body are of, as its elements made them: copies are not near each other at rest as the
+/// two sides of a narrow gap are.
+fn pieces(authoring: &Authoring, rows: &[u32]) -> Vec<u32> {
+    let of_nodes = authoring.cells.pieces_of_nodes(authoring.node_rows.len());
+    let mut of_rows = vec![0; of_nodes.len()];
+    authoring.node_rows.iter().zip(of_nodes).for_each(|(&row, piece)| of_rows[row as usize] = piece);
+    rows.iter().map(|&row| of_rows[row as usize]).collect()
+}
+
 /// Where the numbers of a point are, of a node by its row.
 fn kept(body: u32, of_face: bool, place: u32) -> Kept {
     Kept { body: body as usize, of_face, first: MEETING_NUMBERS * place as usize }
@@ -222,7 +234,7 @@ fn extent(corners: [u32; 3], element: &[u32], row: impl Fn(u32) -> u32, rest: &[
     element.iter().map(|&node| normal.dot(a - rest[row(node) as usize])).fold(0.0, f64::max)
 }
 
-/// Notes which points and faces of one body are near each other at rest.
+/// Notes which points and faces of one piece of a body are near each other at rest.
 fn near_at_rest(contacts: &mut SurfaceContacts, rest: &[DVec3]) {
     let Some(radius) = contacts.near_at_rest() else { return };
     let meets = |point: u32, face: u32, of_face: bool| point == face && contacts.meets(point, face, of_face);
@@ -232,7 +244,10 @@ fn near_at_rest(contacts: &mut SurfaceContacts, rest: &[DVec3]) {
     let lists = Lists::find(&finder, &surface.trees, rest, radius, &cpu);
     let mut apart = Vec::new();
     for (place, &point) in lists.points.iter().enumerate() {
-        apart.extend(lists.triangles(place).iter().map(|&triangle| (point, triangle)));
+        let of_point = surface.pieces[surface.points[point as usize].nodes[0] as usize];
+        let of_triangle = |triangle: u32| surface.pieces[surface.triangles.triangles[triangle as usize][0] as usize];
+        let of_piece = lists.triangles(place).iter().filter(|&&triangle| of_triangle(triangle) == of_point);
+        apart.extend(of_piece.map(|&triangle| (point, triangle)));
     }
     contacts.surface.apart = apart;
 }

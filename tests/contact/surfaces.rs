@@ -359,3 +359,27 @@ fn a_body_that_is_put_beside_another_is_seen_at_once() {
         assert!(force(&mut simulation, "high").z > 0.0, "{}", run.name);
     }
 }
+
+/// Copies that stand on each other at rest meet, with nodes, faces and edges: what is near at rest is left out of one
+/// piece of a body alone.
+#[test]
+fn copies_that_touch_at_rest_meet() {
+    for more in ["", ", points: Faces", ", edges: true"] {
+        let text = format!(
+            "(duration: 0.3, bodies: {{\"b\": (mesh: Box(size: (0.01, 0.01, 0.01), cells: (2, 2, 2)), material: \"m\",
+                copies: 2, apart: (0, 0, 0.01))}},
+            materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e4, poisson: 0.3), damping: 30)}},
+            constraints: [Fixed(on: Set(\"copy 0\"))], contacts: [Itself(sweeps: 4{more})],
+            loads: [Gravity(acceleration: (0, 0, -9.81))])"
+        );
+        let mut simulation = crate::bits::start(&text, Precision::F64, 1);
+        let warned: Vec<String> =
+            simulation.summary("").unwrap().guards.warnings.iter().map(|of| of.message.clone()).collect();
+        assert!(warned.iter().all(|message| !message.contains("never meet")), "{warned:?}");
+        simulation.finish().unwrap();
+        let u = simulation.displacements("b").unwrap();
+        let lowest = u.iter().map(|u| u.z).fold(0.0, f64::min);
+        // a cube under its weight is a few micrometres lower; one that falls freely is 44 cm
+        assert!(lowest > -2e-5 && lowest < -1e-7, "{more}: {lowest}");
+    }
+}
