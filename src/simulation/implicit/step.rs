@@ -25,6 +25,10 @@ use std::ops::Range;
 /// What is left of a residual that is warned of.
 const WARNED: f64 = 0.5;
 
+/// A load that jumps when the motion begins has jumped after such a share of the first step: of those before, of which
+/// generalised-α has a share, it would be late by that share of a step.
+const BEGINS: f64 = 1e-6;
+
 /// What takes implicit steps.
 pub(in crate::simulation) struct Implicit {
     axes: Axes,
@@ -141,7 +145,7 @@ impl Implicit {
         let Iterations { motion, space, kept, .. } = &mut *iterations;
         axes.read(trial.world, motion);
         if clock.step == 0 {
-            begin(&mut trial, motion, &mut space.net, &formula)?;
+            begin(&mut trial, motion, &mut space.net, &formula, BEGINS * h)?;
             kept.forces.read(trial.world, axes);
         }
         let times = [clock.time_at(clock.step), clock.time_at(clock.step + 1)];
@@ -181,9 +185,9 @@ fn set_trying(world: &mut World, trying: bool) {
     }
 }
 
-/// Forces and accelerations at the beginning of the motion.
-fn begin(trial: &mut Trial<'_>, motion: &Motion, net: &mut Reals, formula: &Formula) -> Result<(), Lost> {
-    trial.world.resource_mut::<Signals>().evaluate((0.0, 0.0), [0.0, 0.0]);
+/// Forces and accelerations at the beginning of the motion, with the loads just after it (s).
+fn begin(trial: &mut Trial<'_>, motion: &Motion, net: &mut Reals, formula: &Formula, after: f64) -> Result<(), Lost> {
+    trial.world.resource_mut::<Signals>().evaluate((after, after), [0.0, 0.0]);
     trial.present_forces(net)?;
     for (body, range) in trial.axes.each().filter(|_| formula.needs_acceleration()) {
         let Some(mut accelerations) = trial.world.get_mut::<Acceleration>(body) else { continue };
