@@ -82,7 +82,8 @@ impl PortState {
             // both springs as they are at the end of the batch: tissue goes on from the force that it had
             (Some((aim, turned)), Follow::Proxy { stiffness, damping }) => {
                 let sum = stiffness + self.stiffness() + damping / batch;
-                (place + (aim - place) * (stiffness / sum) + self.force / sum, turned)
+                let aim = place + (aim - place) * (stiffness / sum) + self.force / sum;
+                (if aim.is_finite() { aim } else { place }, turned)
             }
         };
         let [way, angle] = [aim.distance(place), turn.angle_between(turned)];
@@ -105,8 +106,9 @@ impl PortState {
         }
     }
 
-    /// Ends the batch at its last step.
+    /// Ends the batch at its last step. What is no number, of bodies that break down, is not remembered.
     pub fn end(&mut self, felt: Felt, step: u64) {
+        let felt = if felt.force.is_finite() { felt } else { Felt { force: DVec3::ZERO, ..felt } };
         let middle = 0.5 * (self.path[0].1 + self.path[1].1);
         self.ways = self.ways.map(|sum| FORGET * sum);
         if let Some(before) = self.touched.filter(|_| felt.in_contact) {
@@ -114,6 +116,9 @@ impl PortState {
             let (way, change) = ((middle - before).dot(out), (felt.force - self.force).dot(out));
             self.ways[0] += way * way;
             self.ways[1] -= way * change;
+        }
+        if !self.ways.iter().all(|sum| sum.is_finite()) {
+            self.ways = [0.0; 2];
         }
         self.touched = felt.in_contact.then_some(middle);
         self.force = felt.force;

@@ -22,3 +22,19 @@ fn no_tool_jumps_when_the_step_changes_within_a_batch() {
         assert_eq!(state.path[1].1, aim.0);
     }
 }
+
+/// Bodies that break down push with what is no number, or beyond all numbers once it is multiplied.
+#[test]
+fn what_breaks_down_leaves_a_state_that_can_be_taken_up() {
+    let follow = Follow::Proxy { stiffness: 2.0, damping: 0.0 };
+    let port = Port { name: "hand".into(), speed: 10.0, spin: 1e4, every: 0.01, follow };
+    let mut state = PortState::at((0.0, DVec3::ZERO, DQuat::IDENTITY));
+    state.target(&DevicePose { place: DVec3::X, ..DevicePose::default() });
+    let mut clock = Clock::with_step(1e-3);
+    for force in [1.0, 1e200, -1e300, f64::INFINITY, f64::NAN, 1e308, 1.0] {
+        state.begin(&port, &clock);
+        clock.step = state.ends;
+        state.end(Felt { force: DVec3::new(force, 1.0, 0.0), in_contact: true, ..Felt::default() }, clock.step);
+        assert!(state.is_sound() && state.stiffness().is_finite(), "{force}: {state:?}");
+    }
+}
