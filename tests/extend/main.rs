@@ -15,6 +15,7 @@ mod refused;
 mod source;
 mod wind;
 
+use sinew::components::Precision;
 use sinew::gpu_or_reason;
 use sinew::prelude::*;
 use std::path::Path;
@@ -98,4 +99,27 @@ fn the_stable_step_knows_how_stiff_the_plane_is() {
     // ω² of the whole is at least that of the plane, and at most the sum
     assert!(stiff < 2.0 / 4e8f64.sqrt() && stiff > 0.4 * 2.0 / 4e8f64.sqrt(), "{stiff}");
     assert!(soft > 3.0 * stiff, "{soft} without, {stiff} with it");
+}
+
+/// On a GPU nodes inside patches move with the forces on them, and small bodies take many steps in a dispatch, as
+/// without systems from outside.
+#[test]
+fn fast_paths_stay_on_with_them() {
+    for (cells, small) in [(4, true), (12, false)] {
+        let told = |systems: &str| {
+            let cells = format!("bodies.cube.mesh.cells=({cells}, {cells}, {cells})");
+            let schedule = format!(
+                "schedule=[\"boundary\", \"element_forces\", \"gather\", \"gravity\", {systems}\"integrate\", \"observe\"]"
+            );
+            let registry = Registry::default().with(wind::system()).with(plane::system());
+            let options = Options { backend: BackendChoice::Cpu, precision: Precision::F32, ..Options::default() };
+            let mut simulation = Simulation::with_systems(&scene(&[&cells, &schedule]), &options, &registry).unwrap();
+            let told = simulation.explain_on_gpu(&registry).unwrap();
+            let [body] = &told.dispatched[..] else { panic!("{} bodies", told.dispatched.len()) };
+            (body.many_steps, body.interior)
+        };
+        let (alone, with) = (told(""), told("\"wind\", \"plane\", "));
+        assert_eq!(alone, with, "{cells} cells: many steps in a dispatch, nodes inside patches");
+        assert!(alone.0 == small && (small || alone.1 > 0), "{alone:?}");
+    }
 }
