@@ -5,9 +5,9 @@
 //!
 //! `cargo bench --bench contact`; `-- large` and `-- small` run only some of it, `-- turns` whole steps of 10 368 and
 //! of 82 944 tetrahedra a block on one thread and on two, to compare two programs by turns (`-- turns 12` only the
-//! former), `-- near` only steps with a fifth that touches, for profiles (`-- near faces`, `-- far`). Steps are timed
-//! in blocks by turns, and the best of each counts: so other work on the machine does not. What lists take is added,
-//! spread over the steps that they serve.
+//! former), `-- near` only steps with a fifth that touches, for profiles (`-- near faces`, `-- far`; `-- near 500` so
+//! many). Steps are timed in blocks by turns, and the best of each counts: so other work on the machine does not. What
+//! lists take is added, spread over the steps that they serve.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use bevy_ecs::change_detection::DetectChangesMut;
@@ -200,7 +200,8 @@ fn main() {
     if asked("near") || asked("far") {
         let apart = if asked("far") { 0.01 } else { 0.0 };
         let mut near = start(&blocks("Tet4", 12, (apart, 0.0), Some(points)), 1);
-        return near.advance(10000).unwrap();
+        let steps = std::env::args().find_map(|argument| argument.parse().ok());
+        return near.advance(steps.unwrap_or(10000)).unwrap();
     }
     let [nodes, faces] = [("Tet4", "Nodes"), ("Tet4", "Faces")];
     if asked("turns") {

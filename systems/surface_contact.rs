@@ -255,7 +255,7 @@ impl SurfaceContacts {
 
     /// How far faces may be that are in a point's way (m): within reach outside, and as deep as an inside goes.
     fn farthest(&self, reach: f64) -> f64 {
-        self.surface.triangles.depths.iter().copied().fold(self.thickness() + reach, f64::max)
+        f64::max(self.thickness() + reach, self.surface.triangles.deepest())
     }
 
     /// How many points and faces there are.

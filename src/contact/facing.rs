@@ -61,10 +61,10 @@ impl Faced {
 }
 
 impl Surfaces {
-    /// What a point faces whose shortlist is known: where all triangles that matter but one at most are far off or
-    /// beside another, and the point is in front of that one, as for most. Whether that is all there is to it. Nothing
-    /// has come nearer since lists were made than by `nearer`, and faces are looked at that are no farther than `reach`
-    /// (m); `edge` is the length of an edge (m).
+    /// What a point faces whose shortlist is known: where all triangles that matter but one at most are far off, beside
+    /// another or behind a rim, and the point is in front of that one, as for most. Whether that is all there is to it.
+    /// Nothing has come nearer since lists were made than by `nearer`, and faces are looked at that are no farther than
+    /// `reach` (m); `edge` is the length of an edge (m).
     #[inline]
     pub fn faced_at_a_glance(
         &self,
@@ -97,8 +97,10 @@ impl Surfaces {
         for (number, &triangle) in triangles.iter().enumerate().filter(|(number, _)| beside >> number & 1 == 1) {
             let (farthest, part) = (NEARER * seen[number].0, seen[number].1);
             let mut others = triangles.iter().zip(&seen).filter(|(_, (distance, _))| *distance < farthest);
-            // those that show it are not all in shortlists
+            // those that show it are not all in shortlists; beyond a rim there are none, and what is outside there is
+            // so as far as it is away
             if !others.any(|(&other, _)| self.shares_part(other, triangle, part))
+                && !(seen[number].0 > reach(triangle) && self.is_outside((now, at), (triangle, part)))
                 && !self.goes_on_nearer((now.places, at), (triangle, part), farthest)
             {
                 return false;
@@ -112,13 +114,24 @@ impl Surfaces {
         }
         let is_turned_away = match point.triangle {
             Some(triangle) => normal.dot(own.normal(self, now, triangle)) < TURNED_AWAY,
-            None => short.is_turned_away(number) || self.all_turned_away(now, point.nodes[0], normal),
+            // of one at a rim, with walls beside it, its own normal is asked
+            None => {
+                short.is_turned_away(number)
+                    || self.all_turned_away(now, point.nodes[0], normal)
+                    || normal.dot(self.normal_of_node(now, point.nodes[0])) < TURNED_AWAY
+            }
         };
         if is_turned_away {
             faced.first = Some(Facing { triangle: triangles[number], weights, at: nearest, normal, gap });
         }
-        // of a node its own normal may have it otherwise
-        is_turned_away || point.triangle.is_some()
+        true
+    }
+
+    /// Whether a place is outside of a triangle that is nearest at a part of it: then it is so as far as that is away,
+    /// which [`Candidates::outside`] gives.
+    fn is_outside(&self, (now, at): (Placed<'_>, DVec3), (triangle, part): (u32, usize)) -> bool {
+        let nearest = OnTriangle::nearest(at, self.corners(now.places, triangle)).at;
+        (at - nearest).dot(self.normal_of_part(now, triangle, part)) >= 0.0
     }
 
     /// Whether any triangle that shares a part of one is nearer to a place than a distance (m).

@@ -129,8 +129,9 @@ impl Contact {
             self.slip = DVec3::ZERO;
             return;
         }
-        self.step = self.parts.step(steps);
-        self.work = self.force().dot(0.5 * (self.parts.step(earlier) + self.step));
+        let [step, before] = self.parts.both_steps(steps, earlier);
+        self.step = step;
+        self.work = self.force().dot(0.5 * (before + self.step));
         self.slid = if self.slides { self.along(self.step).length() } else { 0.0 };
         if self.friction <= 0.0 {
             self.slip = DVec3::ZERO;
@@ -214,6 +215,9 @@ impl ContactSet {
     /// Friction is the return mapping of an elastic slip that each contact keeps: it sticks without creep, and slides
     /// with exactly the largest force.
     pub fn solve(&mut self, sweeps: usize, cpu: &Cpu) {
+        if self.contacts.is_empty() {
+            return clear_forces(&mut self.forces, self.steps.len());
+        }
         self.list_nodes(cpu);
         let (shares, responses) = (std::mem::take(&mut self.shares), std::mem::take(&mut self.responses));
         let rub = self.contacts.iter().any(|contact| contact.friction > 0.0);
@@ -227,17 +231,20 @@ impl ContactSet {
             }
         }
         (self.shares, self.responses) = (shares, responses);
-        let (steps, earlier) = (&self.steps, &self.earlier);
-        let tasks = self.contacts.chunks_mut(CONTACTS_A_TASK);
-        cpu.for_each(tasks, |contacts| cpu.dispatch(Note { contacts, steps, earlier }));
+        let Self { contacts, steps, earlier, forces, starts, .. } = self;
+        if starts.is_empty() {
+            clear_forces(forces, steps.len());
+            return cpu.dispatch(Note { contacts, steps, earlier, forces });
+        }
+        let tasks = contacts.chunks_mut(CONTACTS_A_TASK);
+        cpu.for_each(tasks, |contacts| cpu.dispatch(Note { contacts, steps, earlier, forces: &mut [] }));
         self.find_forces(cpu);
     }
 
     /// Finds what contacts do to nodes, in the order of contacts.
     pub fn find_forces(&mut self, cpu: &Cpu) {
         let Self { contacts, steps, forces, .. } = self;
-        forces.clear();
-        forces.resize(steps.len(), DVec4::ZERO);
+        clear_forces(forces, steps.len());
         cpu.dispatch(Forces { contacts, forces });
     }
 
@@ -320,6 +327,12 @@ impl ContactSet {
             }
         });
     }
+}
+
+/// Forces on so many nodes: none.
+fn clear_forces(forces: &mut Vec<DVec4>, nodes: usize) {
+    forces.clear();
+    forces.resize(nodes, DVec4::ZERO);
 }
 
 #[cfg(test)]

@@ -16,6 +16,8 @@ pub struct Surfaces {
     pub bodies: Vec<u32>,
     /// How deep behind each triangle (m) is still its inside.
     pub depths: Vec<f64>,
+    /// The largest of these; 0 where there are none.
+    deepest: f64,
     /// The triangle across each side, from each corner to the next; [`NONE`] where there is not exactly one.
     adjacent: Vec<[u32; 3]>,
     /// The triangles around each node, in compressed rows.
@@ -115,7 +117,13 @@ impl Surfaces {
                 next[node as usize] += 1;
             }
         }
-        Self { triangles, bodies, depths, adjacent, starts, around }
+        let deepest = depths.iter().copied().fold(0.0, f64::max);
+        Self { triangles, bodies, depths, deepest, adjacent, starts, around }
+    }
+
+    /// How deep behind any triangle is still its inside (m): asked for several times a step.
+    pub fn deepest(&self) -> f64 {
+        self.deepest
     }
 
     /// How many nodes.
@@ -125,7 +133,7 @@ impl Surfaces {
 
     /// Bytes that they take.
     pub fn bytes(&self) -> usize {
-        let Self { triangles, bodies, depths, adjacent, starts, around } = self;
+        let Self { triangles, bodies, depths, adjacent, starts, around, .. } = self;
         let of_triangles = size_of_val(&triangles[..]) + size_of_val(&bodies[..]) + size_of_val(&depths[..]);
         of_triangles + size_of_val(&adjacent[..]) + size_of_val(&starts[..]) + size_of_val(&around[..])
     }

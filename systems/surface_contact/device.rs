@@ -160,7 +160,7 @@ impl SurfaceContacts {
             // some roundings of a place
             rounding: (8.0 * f64::from(f32::EPSILON) * size.fold(0.0, f64::max)) as f32,
             thickness: self.thickness() as f32,
-            depth: surface.triangles.depths.iter().copied().fold(0.0, f64::max) as f32,
+            depth: surface.triangles.deepest() as f32,
             relaxed: u32::from(clock.relaxation.is_some()),
         }
     }

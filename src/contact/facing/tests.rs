@@ -114,3 +114,47 @@ fn triangles_without_area_are_never_faced() {
     let faced = faced(&surfaces, &places, &Point::node(1, 3), &[0, 1], |_| 1.0);
     assert_eq!(faced.first, None);
 }
+
+/// Two blocks of 12 triangles, the upper one turned a little and moved, so that some of its corners are beyond the rim
+/// of the lower one: as the whole list has it, and for most by no more than a glance.
+#[test]
+fn beside_rims_and_at_rims_a_glance_tells() {
+    let mut random = fastrand::Rng::with_seed(9);
+    let corner = |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2));
+    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let both = [0, 8].into_iter().flat_map(|first| sides.map(|side| side.map(|i| first + i)));
+    let triangles: Vec<[u32; 3]> = both.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    let owners = [[0; 12], [1; 12]].concat();
+    let surfaces = Surfaces::new(16, triangles, owners, vec![0.5; 24]);
+    let listed: Vec<u32> = (0..12).collect();
+    // how many are not seen at a glance, and how many are
+    let [mut beyond, mut before] = [[0; 2]; 2];
+    for _ in 0..200 {
+        let mut within = |size: f64| size * (random.f64() - 0.5);
+        let turned = glam::DQuat::from_euler(glam::EulerRot::XYZ, within(0.02), within(0.02), within(1.5));
+        let off = DVec3::new(within(0.8), within(0.8), 1.0 + within(0.04));
+        let places: Vec<DVec3> =
+            (0..16).map(|i| if i < 8 { corner(i) } else { turned * corner(i - 8) + off }).collect();
+        for node in 8..12 {
+            let (point, distances) = (Point::node(1, node), [0.0; 12]);
+            let listed = Listed { triangles: &listed, distances: &distances, nearer: 0.0, farthest: 1.0 };
+            let now = Placed { places: &places, normals: &[] };
+            let (mut short, mut found) = (Shortlist::UNKNOWN, Faced::NOTHING);
+            let stays = Stays { moved: 1e-3, reach: 1e-3 };
+            let kept = (&mut found, &mut Kept::default());
+            surfaces.faced((now, &point), listed, (|_| 0.05, 1.0), (&mut short, stays), kept);
+            if !short.is_known() {
+                continue;
+            }
+            let (same, at_a_glance) = by_shortlist(&surfaces, (now, &point), listed, &|_| 0.05, &short);
+            assert_eq!((same.first, same.second), (found.first, found.second));
+            let place = places[node as usize];
+            let is_beyond = place.min(DVec3::ONE - place).truncate().min_element() < 0.0;
+            let counted = if is_beyond { &mut beyond } else { &mut before };
+            counted[usize::from(at_a_glance)] += 1;
+        }
+    }
+    assert!(beyond[1] > 100 && beyond[0] < beyond[1] / 4, "{beyond:?}");
+    // those within are inside several triangles at once, as far as an inside goes
+    assert!(before[1] > 80, "{before:?}");
+}

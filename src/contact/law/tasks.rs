@@ -27,9 +27,12 @@ impl WithSimd for Begin<'_> {
     type Output = ();
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        for contact in self.contacts {
-            let force = contact.begin(self.shares, self.responses);
-            contact.parts.push(force, self.responses, self.steps);
+        // as long as each other: a node is looked for once
+        let Self { contacts, shares, responses, steps } = self;
+        let (shares, steps) = (&shares[..responses.len()], &mut steps[..responses.len()]);
+        for contact in contacts {
+            let force = contact.begin(shares, responses);
+            contact.parts.push(force, responses, steps);
         }
     }
 }
@@ -68,25 +71,33 @@ impl WithSimd for Push<'_> {
     type Output = ();
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        for (contact, change) in self.contacts.iter().zip(self.changes) {
-            contact.parts.push(*change, self.responses, self.steps);
+        let Self { contacts, changes, responses, steps } = self;
+        let steps = &mut steps[..responses.len()];
+        for (contact, change) in contacts.iter().zip(changes) {
+            contact.parts.push(*change, responses, steps);
         }
     }
 }
 
-/// The task of noting where points go.
+/// The task of noting where points go, and of adding up forces on nodes where there are any to add to.
 pub(super) struct Note<'a> {
     pub contacts: &'a mut [Contact],
     pub steps: &'a [DVec4],
     pub earlier: &'a [DVec4],
+    pub forces: &'a mut [DVec4],
 }
 
 impl WithSimd for Note<'_> {
     type Output = ();
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        for contact in self.contacts {
-            contact.note(self.steps, self.earlier);
+        let Self { contacts, steps, earlier, forces } = self;
+        let earlier = &earlier[..steps.len()];
+        for contact in contacts {
+            contact.note(steps, earlier);
+            if !forces.is_empty() {
+                contact.parts.share(contact.force(), forces);
+            }
         }
     }
 }

@@ -196,9 +196,18 @@ fn threads_find_the_same_forces() {
     let mut shared = set.clone();
     set.solve(2, &one());
     shared.solve(2, &Cpu::new(3, 0, Default::default()));
-    assert_eq!(set.steps, shared.steps);
+    assert_eq!((set.steps, set.forces), (shared.steps, shared.forces));
     assert!(set.contacts.iter().zip(&shared.contacts).all(|(a, b)| a.force() == b.force() && a.slip == b.slip));
     assert!(!shared.starts.is_empty() && set.starts.is_empty());
+}
+
+#[test]
+fn without_contacts_there_are_no_forces_and_steps_stay() {
+    let steps = vec![DVec4::X, DVec4::Y];
+    let forces = vec![DVec4::ONE; 3];
+    let mut set = ContactSet { steps: steps.clone(), forces, ..ContactSet::default() };
+    set.solve(2, &one());
+    assert_eq!((set.steps, set.forces), (steps, vec![DVec4::ZERO; 2]));
 }
 
 #[test]

@@ -11,3 +11,9 @@ fn angles_are_those_of_sines_and_cosines() {
     }
     assert_eq!(angle(0.0, 0.0), 0.0);
 }
+
+#[test]
+fn the_deepest_inside_is_that_of_any_triangle() {
+    let of = |depths: &[f64]| Surfaces::new(3, vec![[0, 1, 2]; depths.len()], vec![0; depths.len()], depths.to_vec());
+    assert_eq!([&[][..], &[0.5], &[0.1, 0.3, 0.2]].map(|depths| of(depths).deepest()), [0.0, 0.5, 0.3]);
+}
