@@ -4,7 +4,7 @@
 use super::{Assembly, BodyParts};
 use crate::components::*;
 use crate::contact::{TURNED_AWAY, Tree};
-use crate::math::OnTriangle;
+use crate::mesh::OnTriangle;
 use crate::mesh::{Locator, Mesh};
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::Contact;

@@ -3,7 +3,7 @@
 use super::facing::Facing;
 use super::shortlist::Stays;
 use super::surfaces::{Placed, Surfaces};
-use crate::math::OnTriangle;
+use crate::mesh::OnTriangle;
 use glam::DVec3;
 
 /// Nearer than this to a triangle is on it, in edges.

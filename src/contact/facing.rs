@@ -3,7 +3,7 @@
 use super::candidates::{Candidates, Kept, Listed, NEARER, ON_IT};
 use super::shortlist::{MOST, Shortlist, Stays};
 use super::surfaces::{Placed, Point, Surfaces};
-use crate::math::OnTriangle;
+use crate::mesh::OnTriangle;
 use glam::DVec3;
 
 /// Surfaces face one another where the cosine between their normals is below this.

@@ -3,7 +3,7 @@
 use super::boxes::Tree;
 use super::surfaces::{Point, Surfaces};
 use crate::backend::cpu::Cpu;
-use crate::math::OnTriangle;
+use crate::mesh::OnTriangle;
 use glam::DVec3;
 use std::ops::Range;
 

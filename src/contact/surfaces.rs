@@ -158,7 +158,7 @@ impl Surfaces {
         now.normals.get(triangle as usize).copied().unwrap_or_else(|| self.normal(now.places, triangle))
     }
 
-    /// The normal of a part of a triangle, as [`OnTriangle::part`](crate::math::OnTriangle) counts them: of a side the
+    /// The normal of a part of a triangle, as [`OnTriangle::part`](crate::mesh::OnTriangle) counts them: of a side the
     /// sum of those of both its triangles, of a corner the sum weighted with angles (Bærentzen and Aanæs 2005).
     pub(super) fn normal_of_part(&self, now: Placed<'_>, triangle: u32, part: usize) -> DVec3 {
         match part {

@@ -29,6 +29,4 @@ pub use rows::{Rows, Scratch};
 #[doc(hidden)]
 pub use simd::{F32s, F64s, LANES, lane_place};
 #[doc(hidden)]
-pub use sinew_mesh::OnTriangle;
-#[doc(hidden)]
 pub use tensor::{dot, dot_plus, minor};

@@ -1,5 +1,5 @@
 use super::*;
-use crate::math::OnTriangle;
+use crate::mesh::OnTriangle;
 
 #[test]
 fn all_triangles_within_a_radius_are_seen_after_they_have_moved() {
