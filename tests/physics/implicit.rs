@@ -100,7 +100,7 @@ fn what_euler_takes_is_booked() {
 }
 
 /// A cube under its weight; the mean displacement of its top after some time, and the simulation.
-fn cube(solver: &str, elements: &str, effects: &str, time: f64, options: &Options) -> (f64, Simulation) {
+pub fn cube(solver: &str, elements: &str, effects: &str, time: f64, options: &Options) -> (f64, Simulation) {
     let scene = format!(
         "(duration: 1, {solver}
         bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3), elements: {elements}), material: \"m\")}},
@@ -249,46 +249,6 @@ fn a_step_that_is_not_found_is_told_and_leaves_the_last_state() {
     let error = simulation.advance(1).unwrap_err().to_string();
     assert!(error.contains("implicit step") && error.contains("was not found"), "{error}");
     assert_eq!((simulation.displacements("b").unwrap(), simulation.step_count()), (before, 4));
-}
-
-#[test]
-fn budgets_bound_passes_and_tell_what_is_left() {
-    let (_, mut simulation) = cube(
-        "solver: Implicit(step: 0.02, budget: 3, preconditioner: Identity),",
-        "Tet4",
-        "",
-        0.2,
-        &options(Precision::F32, 1),
-    );
-    let counts = simulation.implicit_steps().unwrap();
-    println!("{counts:?}");
-    assert!(counts.most_passes <= 5 && counts.largest_residual_left > 0.5, "{counts:?}");
-    let summary = simulation.summary("finished").unwrap();
-    assert!(summary.guards.warnings.iter().any(|notice| notice.criterion == "implicit_step"), "{:?}", summary.guards);
-}
-
-/// A cube that falls on stiff springs is searched for along its way by dozens of looks; with a budget there are no
-/// more passes for that than for the rest. What is left is told of, and the cube stays whole.
-#[test]
-fn budgets_bound_the_search_along_a_way_too() {
-    let passes = |budget: &str| {
-        let mut simulation = start(&format!(
-            "(duration: 0.1, solver: Implicit(step: 5e-3, scheme: GeneralizedAlpha(), {budget}),
-            bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3), elements: Tet4), material: \"m\",
-                velocity: (0, 0, -2), translate: (0, 0, 0.02))}},
-            materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e4, poisson: 0.45), damping: 5)}},
-            tools: {{\"table\": (shape: Plane())}}, contacts: [Tool(tool: \"table\", law: Penalty(share: 100))])"
-        ));
-        simulation.finish().unwrap();
-        let counts = simulation.implicit_steps().unwrap();
-        println!("{budget}: {counts:?}");
-        let u = simulation.displacements("b").unwrap();
-        assert!(counts.halvings > 0 && u.iter().all(|u| u.length() < 0.3), "{u:?}");
-        counts.most_passes
-    };
-    let (free, bounded) = (passes(""), passes("budget: 12"));
-    assert!(free > 30, "{free}");
-    assert!(bounded <= 14, "{bounded}");
 }
 
 /// Steps of bodies that have come to rest begin within the tolerance, and leave nothing that needs a word.
