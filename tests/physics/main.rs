@@ -41,10 +41,14 @@ mod implicit_lens;
 mod implicit_memory;
 mod implicit_orders;
 mod implicit_parts;
+mod implicit_products;
 mod implicit_tetrahedron;
 mod inputs;
 mod inversion;
 mod islands;
+#[path = "../kernel_worlds/laws.rs"]
+#[allow(dead_code, reason = "kernels are tested with more of them")]
+mod law_words;
 mod laws;
 mod load_stiffness;
 mod loads;
