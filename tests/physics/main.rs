@@ -43,6 +43,7 @@ mod implicit_orders;
 mod implicit_parts;
 mod implicit_products;
 mod implicit_tetrahedron;
+mod implicit_trials;
 mod inputs;
 mod inversion;
 mod islands;
