@@ -35,6 +35,7 @@ mod history;
 mod hourglass;
 mod implicit;
 mod implicit_adaptive;
+mod implicit_agreement;
 mod implicit_device;
 mod implicit_forms;
 mod implicit_lens;
