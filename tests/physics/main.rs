@@ -41,6 +41,7 @@ mod implicit_forms;
 mod implicit_lens;
 mod implicit_memory;
 mod implicit_orders;
+mod implicit_partners;
 mod implicit_parts;
 mod implicit_products;
 mod implicit_tetrahedron;
