@@ -225,7 +225,9 @@ fn a_step_that_is_not_found_is_told_and_leaves_the_last_state() {
     simulation.advance(4).unwrap();
     let before = simulation.displacements("b").unwrap();
     let error = simulation.advance(1).unwrap_err().to_string();
+    println!("{error}");
     assert!(error.contains("implicit step") && error.contains("was not found"), "{error}");
+    assert!(error.contains("no descent after"), "{error}");
     assert_eq!((simulation.displacements("b").unwrap(), simulation.step_count()), (before, 4));
 }
 
