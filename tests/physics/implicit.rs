@@ -116,30 +116,8 @@ pub fn cube(solver: &str, elements: &str, effects: &str, time: f64, options: &Op
     (top.iter().sum::<f64>() / top.len() as f64, simulation)
 }
 
-const EFFECTS: &str =
+pub const EFFECTS: &str =
     "fibres: (eta: 2000, direction: Along(1, 2, 3)), prony: (terms: [(alpha: 0.5, tau: 0.1)]), damping: 2,";
-
-#[test]
-fn steps_converge_to_explicit_ones_by_their_order() {
-    let f64s = options(Precision::F64, 1);
-    for elements in ["Tet4", "Tet4NodalPressure", "Hex8MeanDilatation"] {
-        let (exact, _) = cube("integration: (step: 1e-4),", elements, EFFECTS, 0.16, &f64s);
-        let error = |scheme: &str, step: f64| {
-            let solver = format!("solver: Implicit(scheme: {scheme}, step: {step}, tolerance: 1e-9),");
-            (cube(&solver, elements, EFFECTS, 0.16, &f64s).0 - exact).abs()
-        };
-        for (scheme, steps, ratio) in [
-            ("Euler", [0.004, 0.002], [1.7, 2.4]),
-            ("GeneralizedAlpha(high_frequencies: 0.8)", [0.008, 0.004], [3.2, 5.0]),
-        ] {
-            let errors = steps.map(|step| error(scheme, step));
-            println!("{elements}, {scheme}: {errors:?}, of {exact}");
-            let found = errors[0] / errors[1];
-            assert!(found > ratio[0] && found < ratio[1], "{elements}, {scheme}: {errors:?}, ratio {found}");
-            assert!(errors[1] < 0.1 * exact.abs(), "{elements}, {scheme}: {errors:?} of {exact}");
-        }
-    }
-}
 
 #[test]
 fn any_number_of_threads_gives_the_same_bits_and_counts() {
@@ -247,7 +225,9 @@ fn a_step_that_is_not_found_is_told_and_leaves_the_last_state() {
     simulation.advance(4).unwrap();
     let before = simulation.displacements("b").unwrap();
     let error = simulation.advance(1).unwrap_err().to_string();
+    println!("{error}");
     assert!(error.contains("implicit step") && error.contains("was not found"), "{error}");
+    assert!(error.contains("no descent after"), "{error}");
     assert_eq!((simulation.displacements("b").unwrap(), simulation.step_count()), (before, 4));
 }
 
@@ -367,19 +347,4 @@ fn a_cube_comes_to_rest_where_other_programs_have_it() {
     let u = simulation.displacements("b").unwrap();
     let top: Vec<f64> = (0..u.len()).filter(|&i| rest[i].z > 0.0999).map(|i| u[i].z).collect();
     near("top", top.iter().sum::<f64>() / top.len() as f64, -2.625e-3, 2.625e-3, 2e-3);
-}
-
-/// Trials leave what is kept as it is: more of them change digits of the answer only.
-#[test]
-fn what_steps_carry_on_does_not_depend_on_how_often_forces_were_tried() {
-    let run = |tolerance: &str, preconditioner: &str| {
-        let solver = format!("solver: Implicit(step: 0.01, tolerance: {tolerance}, preconditioner: {preconditioner}),");
-        cube(&solver, "Tet4", EFFECTS, 0.2, &options(Precision::F64, 1))
-    };
-    let (few, one) = run("1e-9", "BlockJacobi");
-    let (many, other) = run("1e-12", "Identity");
-    let passes = [&one, &other].map(|simulation| simulation.implicit_steps().unwrap().passes);
-    println!("{passes:?} passes: {few:e}, {many:e}");
-    assert!(passes[1] > passes[0] + passes[0] / 2, "{passes:?}");
-    near("top", few, many, many, 1e-6);
 }

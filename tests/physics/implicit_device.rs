@@ -173,6 +173,7 @@ fn a_step_that_is_not_found_on_a_gpu_leaves_the_last_state() {
     let before = simulation.displacements("b").unwrap();
     let error = simulation.advance(1).unwrap_err().to_string();
     assert!(error.contains("implicit step") && error.contains("was not found"), "{error}");
+    assert!(error.contains("no descent after"), "{error}");
     assert_eq!((simulation.displacements("b").unwrap(), simulation.step_count()), (before, 4));
 }
 

@@ -35,17 +35,24 @@ mod history;
 mod hourglass;
 mod implicit;
 mod implicit_adaptive;
+mod implicit_agreement;
 mod implicit_budget;
 mod implicit_device;
 mod implicit_forms;
 mod implicit_lens;
 mod implicit_memory;
 mod implicit_orders;
+mod implicit_partners;
 mod implicit_parts;
+mod implicit_products;
 mod implicit_tetrahedron;
+mod implicit_trials;
 mod inputs;
 mod inversion;
 mod islands;
+#[path = "../kernel_worlds/laws.rs"]
+#[allow(dead_code, reason = "kernels are tested with more of them")]
+mod law_words;
 mod laws;
 mod load_stiffness;
 mod loads;
