@@ -1,5 +1,5 @@
-//! Implicit steps with a hand that grabs, with loads and motions that a program sets, and with elements of second order,
-//! wedges and hexahedra with one point.
+//! Implicit steps with a hand that grabs, with loads and motions that a program sets, and with elements of second
+//! order, wedges and hexahedra with one point.
 
 use crate::configurations::{Configuration, configurations, near, scene_of};
 use crate::grids::bits;
@@ -56,9 +56,9 @@ fn apart(one: &[(DVec3, DVec3)], other: &[(DVec3, DVec3)]) -> [f64; 2] {
     [largest(|at| at.0), largest(|at| at.1)]
 }
 
-/// Beside explicit steps that are far shorter, what is off falls to a quarter with half the step. (The hand's damper has
-/// the velocity of half an explicit step before, so that these are off in proportion to their length: what two lengths
-/// lead to is taken.) f32 and a GPU take the
+/// Beside explicit steps that are far shorter, what is off falls to a quarter with half the step. (The hand's damper
+/// has the velocity of half an explicit step before, so that these are off in proportion to their length: what two
+/// lengths lead to is taken.) f32 and a GPU take the
 /// steps of f64 as the hand goes on, to 60 times the tolerance (see `implicit_device.rs`) of its way.
 #[test]
 fn a_hand_pulls_as_beside_explicit_steps() {

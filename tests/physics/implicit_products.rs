@@ -3,8 +3,8 @@
 //!
 //! A difference of forces at a strain ε, 1e-7 in f64 and 1e-3 in f32, has ε/2 of the third derivative of the energy in
 //! it, which is not symmetric. Displacements of neighbours are opposite at worst, so that gradients are up to 2 ε, and
-//! of these laws where strains are .3 third derivatives are some three times the second: 3 ε of the product. q·Kp has as
-//! little of what is off as of anything that knows nothing of q: a third of that here.
+//! of these laws where strains are .3 third derivatives are some three times the second: 3 ε of the product. q·Kp has
+//! as little of what is off as of anything that knows nothing of q: a third of that here.
 
 use crate::configurations::{ELEMENTS, scene_of};
 use crate::implicit::{EFFECTS, options};

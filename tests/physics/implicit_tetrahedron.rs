@@ -234,9 +234,9 @@ struct State {
 /// Rates (1/s) and times (s) of damping by mass and by stiffness.
 type Damping = (f64, f64);
 
-/// One step of h: M (w − u − h v)/h² + c M (w − u)/h + F(w) + β Ḟ = 0, linearised about w = u + h v, and about what that
-/// leads to as often as the law is iterated. The rates are those of S_iso and of the pressure over the step, so that
-/// with b = β/h the stress is (1 + b) P less b of the parts of before, turned with what it is at the end. How far
+/// One step of h: M (w − u − h v)/h² + c M (w − u)/h + F(w) + β Ḟ = 0, linearised about w = u + h v, and about what
+/// that leads to as often as the law is iterated. The rates are those of S_iso and of the pressure over the step, so
+/// that with b = β/h the stress is (1 + b) P less b of the parts of before, turned with what it is at the end. How far
 /// forces take it (m).
 fn dense_step(law: &Law, mass: f64, (damping, beta): Damping, h: f64, state: &mut State) -> f64 {
     let State { x, v, parts } = state;

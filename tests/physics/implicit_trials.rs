@@ -1,5 +1,5 @@
-//! Forces that are only tried leave nothing: memories of viscous materials, what was removed, what guards have noted and
-//! which elements were turned inside out are the same, bit for bit, however often and wherever forces are tried.
+//! Forces that are only tried leave nothing: memories of viscous materials, what was removed, what guards have noted
+//! and which elements were turned inside out are the same, bit for bit, however often and wherever forces are tried.
 
 use crate::configurations::{configurations, near, scene_of};
 use crate::implicit::{EFFECTS, cube, options};
