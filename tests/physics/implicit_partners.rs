@@ -58,8 +58,8 @@ fn apart(one: &[(DVec3, DVec3)], other: &[(DVec3, DVec3)]) -> [f64; 2] {
 
 /// Beside explicit steps that are far shorter, what is off falls to a quarter with half the step. (The hand's damper
 /// has the velocity of half an explicit step before, so that these are off in proportion to their length: what two
-/// lengths lead to is taken.) f32 and a GPU take the steps of f64 as the hand goes on, to 60 times the tolerance (see
-/// `implicit_device.rs`) of its way.
+/// lengths lead to is taken.) f32 and a GPU take the
+/// steps of f64 as the hand goes on, to 60 times the tolerance (see `implicit_device.rs`) of its way.
 #[test]
 fn a_hand_pulls_as_beside_explicit_steps() {
     let f64s = options(Precision::F64, 1);
