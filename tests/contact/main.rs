@@ -9,7 +9,9 @@ mod bits;
 #[path = "../physics/configurations.rs"]
 mod configurations;
 mod contact_fields;
+mod copies;
 mod edges;
+mod elements_under_tools;
 mod faces;
 #[allow(dead_code)]
 #[path = "../physics/frames.rs"]
@@ -20,9 +22,13 @@ mod grasp;
 mod implicit;
 mod implicit_ties;
 mod ironing;
+mod kinematic_rest;
 mod lost_surfaces;
+mod memory;
 mod rest;
+mod static_friction;
 mod surfaces;
 mod sutures;
 mod sweeps;
+mod thickness;
 mod ties;

@@ -12,6 +12,7 @@ mod generate;
 mod materials;
 mod memory;
 mod mutate;
+mod pairs;
 #[path = "../meshes/samples.rs"]
 #[allow(dead_code)]
 mod samples;

@@ -241,7 +241,8 @@ fn touch(only_kinematic: bool, r: &mut Rng) -> String {
     friction(r) + thin + &law(only_kinematic, r)
 }
 
-fn surfaces(statics: bool, r: &mut Rng) -> String {
+/// How two surfaces meet.
+pub fn surfaces(statics: bool, r: &mut Rng) -> String {
     let mut text = friction(r) + &law(statics, r);
     if r.u8(..4) == 0 {
         text += &format!(", thickness: {:?}", size(r, 1e-6, 1e-3));

@@ -91,21 +91,38 @@ pub fn slide_to_rest(trial: &mut Trial<'_>) -> Result<(), Error> {
 
 /// H43.
 pub fn direction(trial: &mut Trial<'_>) -> Result<(), Error> {
-    for &degrees in trial.some(&[33.0_f64, 0.0, 120.0, 250.0]) {
+    let first = (0.02, 4, 1e4, 0.2);
+    for &(degrees, (side, cells, young, friction)) in trial.some(&[
+        (33.0_f64, first),
+        (0.0, first),
+        (120.0, first),
+        (250.0, first),
+        (33.0, (0.008, 3, 4e3, 0.35)),
+        (200.0, (0.008, 3, 4e3, 0.35)),
+    ]) {
         let (sin, cos) = degrees.to_radians().sin_cos();
-        let gravity = format!("loads[0].acceleration=({}, {}, -10)", 6.0 * cos, 6.0 * sin);
-        let mut simulation = trial.start(&[gravity])?;
+        let elements = trial.configuration.elements_name();
+        // a quarter as high as it is wide
+        let size = format!("({side}, {side}, {})", 0.25 * side);
+        let mut simulation = trial.start(&[
+            format!("loads[0].acceleration=({}, {}, -10)", 6.0 * cos, 6.0 * sin),
+            format!("bodies.body.mesh=Box(size: {size}, cells: ({cells}, {cells}, 1), elements: {elements})"),
+            format!("materials.tissue.neo_hookean=Young(young: {young}, poisson: 0.45)"),
+            format!("contacts=[Tool(tool: \"table\", friction: {friction})]"),
+        ])?;
         let weight = 10.0 * mass(&mut simulation, "body")?;
         simulation.finish()?;
         let force = simulation.tool("table")?.force;
         let off = (force.y.atan2(force.x).to_degrees() - degrees + 540.0).rem_euclid(360.0) - 180.0;
-        trial.most(format!("degrees off {degrees}"), off, 0.5);
-        trial.near(format!("tangential force (N) at {degrees}°"), force.truncate().length(), 0.2 * weight, 0.02);
+        let what = |what: &str| format!("{what} at {degrees}° with friction {friction}");
+        trial.most(what("degrees off"), off, 0.5);
+        trial.near(what("tangential force (N)"), force.truncate().length(), friction * weight, 0.02);
     }
     Ok(())
 }
 
-/// H49.
+/// H49. One set of numbers: with μ .1, 20 kPa and ν .3 nodes that slide are held by .0988 of what presses them in f32, 1.2 %
+/// off, and why has not been found out.
 pub fn ironing(trial: &mut Trial<'_>) -> Result<(), Error> {
     let friction = 0.2;
     let mut simulation = trial.start(&[])?;

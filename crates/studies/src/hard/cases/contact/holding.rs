@@ -21,8 +21,25 @@ fn energy(simulation: &mut Simulation) -> Result<f64, Error> {
 
 /// H61.
 pub fn grasp(trial: &mut Trial<'_>) -> Result<(), Error> {
-    let elements = format!("bodies.body.mesh.elements={}", trial.configuration.elements_name());
-    let mut simulation = trial.start(&[elements])?;
+    for &(density, young, cells) in trial.some(&[(1000.0, 3e3, 3), (600.0, 2e3, 2)]) {
+        lifted(trial, density, young, cells)?;
+    }
+    Ok(())
+}
+
+/// A cube of a density (kg/m³), a modulus (Pa) and so many cells across.
+fn lifted(trial: &mut Trial<'_>, density: f64, young: f64, cells: u32) -> Result<(), Error> {
+    let elements = trial.configuration.elements_name();
+    let mut simulation = trial.start(&[
+        format!(
+            "bodies.body.mesh=Box(size: (0.02, 0.02, 0.02), cells: ({cells}, {cells}, {cells}), elements: {elements})"
+        ),
+        format!(
+            "materials.tissue=(density: {density}, neo_hookean: Young(young: {young}, poisson: 0.45), damping: 20)"
+        ),
+    ])?;
+    let held = (cells as usize + 1).pow(2);
+    let what = |what: &str| format!("{what}, {cells} cells of {young} Pa");
     let weight = 9.81 * mass(&mut simulation, "body")?;
     let largest = 0.03 * weight;
     simulation.advance_to(0.88)?;
@@ -33,13 +50,13 @@ pub fn grasp(trial: &mut Trial<'_>) -> Result<(), Error> {
         jump = jump.max((now - before).abs() / largest);
         before = now;
     }
-    trial.most("energy that closing makes or takes, of the largest", jump, 1e-6);
-    trial.holds("it is closed", simulation.tool("forceps")?.nodes == 16);
+    trial.most(what("energy that closing makes or takes, of the largest"), jump, 1e-6);
+    trial.holds(what("it is closed"), simulation.tool("forceps")?.nodes == held);
     simulation.advance_to(2.65)?;
     let reading = simulation.tool("forceps")?;
-    trial.near("weight that hangs on it (N)", -reading.force.z, weight, 1e-4);
-    trial.most("force aside, of the weight", reading.force.truncate().length() / weight, 1e-4);
-    trial.holds("the table bears nothing", simulation.tool("table")?.nodes == 0);
+    trial.near(what("weight that hangs on it (N)"), -reading.force.z, weight, 1e-4);
+    trial.most(what("force aside, of the weight"), reading.force.truncate().length() / weight, 1e-4);
+    trial.holds(what("the table bears nothing"), simulation.tool("table")?.nodes == 0);
     simulation.advance_to(2.79)?;
     let mut jump = 0.0_f64;
     let mut before = rising(&mut simulation)?;
@@ -51,8 +68,8 @@ pub fn grasp(trial: &mut Trial<'_>) -> Result<(), Error> {
         jump = jump.max((now - before).abs() / bound);
         before = now;
     }
-    trial.most("change of momentum in a step while it opens, of what weight and damping make", jump, 1.0);
-    trial.holds("it is open", simulation.tool("forceps")?.nodes == 0);
+    trial.most(what("change of momentum in a step while it opens, of what weight and damping make"), jump, 1.0);
+    trial.holds(what("it is open"), simulation.tool("forceps")?.nodes == 0);
     Ok(())
 }
 
@@ -79,13 +96,28 @@ fn torn(trial: &mut Trial<'_>, sets: &[String], what: &str, strength: f64) -> Re
 
 /// H62.
 pub fn suture(trial: &mut Trial<'_>) -> Result<(), Error> {
-    let thread = trial.elements_of(&["low", "up"]);
-    let (stiffness, strength) = (50.0, 0.1);
-    let loss = torn(trial, &thread, "the thread", strength)?;
-    trial.near("energy of the thread when it tears (J)", loss, 0.5 * strength * strength / stiffness, 0.02);
-    let glued = "attachments=[Glue(name: \"seam\", bodies: (\"low\", \"up\"), normal: 1000, shear: 1000)]";
-    let glue = [&thread[..], &["bodies.up.translate=(0, 0, 0.02)".to_string(), glued.to_string()]].concat();
-    // 1000 Pa on a square centimetre
-    torn(trial, &glue, "the glue", strength)?;
+    for &(stiffness, strength, young, across) in trial.some(&[(50.0, 0.1, 2e4, 3), (80.0, 0.06, 4e4, 4)]) {
+        let elements = trial.configuration.elements_name();
+        let mut bars = vec![format!("materials.tissue.neo_hookean=Young(young: {young}, poisson: 0)")];
+        bars.extend(["low", "up"].map(|body| {
+            format!(
+                "bodies.{body}.mesh=Box(size: (0.01, 0.01, 0.02), cells: ({across}, {across}, 6), elements: {elements})"
+            )
+        }));
+        let of_thread =
+            [format!("attachments[0].stiffness={stiffness}"), format!("attachments[0].strength={strength}")];
+        let loss = torn(trial, &[&bars[..], &of_thread].concat(), &format!("a thread of {stiffness} N/m"), strength)?;
+        let stored = 0.5 * strength * strength / stiffness;
+        trial.near(format!("energy of the thread of {stiffness} N/m when it tears (J)"), loss, stored, 0.02);
+        // on a square centimetre
+        let pressure = strength * 1e4;
+        let glue = [
+            "bodies.up.translate=(0, 0, 0.02)".to_string(),
+            format!(
+                "attachments=[Glue(name: \"seam\", bodies: (\"low\", \"up\"), normal: {pressure}, shear: {pressure})]"
+            ),
+        ];
+        torn(trial, &[&bars[..], &glue].concat(), &format!("glue of {pressure} Pa"), strength)?;
+    }
     Ok(())
 }

@@ -4,7 +4,7 @@ use super::super::super::Trial;
 use glam::DVec3;
 use sinew::Error;
 use sinew::Simulation;
-use sinew::components::DisplacementIncrement;
+use sinew::components::{Clock, DisplacementIncrement};
 
 /// Displacements of all nodes of a body in the last step (m), in the author's order.
 pub fn steps(simulation: &mut Simulation, body: &str) -> Result<Vec<DVec3>, Error> {
@@ -56,6 +56,13 @@ pub fn kinetic_and_spent(simulation: &mut Simulation) -> Result<f64, Error> {
 pub fn places(simulation: &mut Simulation, body: &str) -> Result<Vec<DVec3>, Error> {
     let (rest, u) = (simulation.rest_positions(body)?, simulation.displacements(body)?);
     Ok(rest.iter().zip(u).map(|(rest, u)| *rest + u).collect())
+}
+
+/// How long (s) forces of the last step acted: from the middle of the step before, whatever their lengths were.
+pub fn last_window(simulation: &Simulation) -> f64 {
+    let clock = simulation.world().resource::<Clock>();
+    let (from, to) = clock.window_at(clock.step - 1);
+    to - from
 }
 
 /// The modulus of a wave along a bar whose sides are held, λ + 2μ (Pa), from Young's modulus and Poisson's ratio.

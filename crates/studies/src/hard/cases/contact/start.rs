@@ -7,7 +7,16 @@ use sinew::Error;
 
 /// H54.
 pub fn tunnelling(trial: &mut Trial<'_>) -> Result<(), Error> {
-    let (radius, way, step) = (2e-4, 1e-3, 2e-5);
+    for &(radius, way, step, young) in trial.some(&[(2e-4, 1e-3, 2e-5, 1e5), (3e-4, 1.2e-3, 4e-5, 3e4)]) {
+        needle(trial, (radius, way, step), young)?;
+    }
+    Ok(())
+}
+
+/// A needle of a radius (m) that goes so far (m), some radii in each step (s), at a slab of a modulus (Pa).
+fn needle(trial: &mut Trial<'_>, (radius, way, step): (f64, f64, f64), young: f64) -> Result<(), Error> {
+    // from half a radius above the slab
+    let (from, to) = (1.5 * radius, 1.5 * radius - way);
     let unseen = [(0.1, 0.0), (0.4, 0.0), (1.0, 0.0), (2.0, 0.0), (5.0, 0.0), (0.1, 5e-4)];
     let swept = [(1.0, 0.0), (2.0, 0.0), (5.0, 0.0)];
     let all = unseen.map(|case| (case, false)).into_iter().chain(swept.map(|case| (case, true)));
@@ -18,11 +27,13 @@ pub fn tunnelling(trial: &mut Trial<'_>) -> Result<(), Error> {
             format!("integration.step={step}"),
             format!("contacts[0].swept={swept}"),
             format!(
-                "tools.needle.path=[(t: 0, at: ({aside}, {aside}, 3e-4)), (t: {time}, at: ({aside}, {aside}, -7e-4))]"
+                "tools.needle.path=[(t: 0, at: ({aside}, {aside}, {from})), (t: {time}, at: ({aside}, {aside}, {to}))]"
             ),
+            format!("tools.needle.shape=Capsule(length: 0.02, radius: {radius})"),
+            format!("materials.tissue.neo_hookean=Young(young: {young}, poisson: 0.4)"),
         ];
         let looked_at = if swept { ", swept" } else { "" };
-        let what = format!("{radii} radii a step, {aside} m beside a node{looked_at}");
+        let what = format!("{radius} m, {radii} radii a step, {aside} m beside a node{looked_at}");
         let mut simulation = match trial.start(&sets) {
             Ok(simulation) => simulation,
             Err(error) => {
@@ -35,7 +46,7 @@ pub fn tunnelling(trial: &mut Trial<'_>) -> Result<(), Error> {
         match simulation.finish() {
             Err(error) => trial.stops(&what, Err(error), &["element"]),
             Ok(()) if aside == 0.0 => {
-                let tip = DVec3::new(0.0, 0.0, -7e-4);
+                let tip = DVec3::new(0.0, 0.0, to);
                 // whoever is behind the tip and within the needle has let it through
                 let through = |place: &&DVec3| place.truncate().length() < 0.99 * radius && place.z > tip.z + radius;
                 let count = places(&mut simulation, "body")?.iter().filter(through).count();
@@ -49,13 +60,22 @@ pub fn tunnelling(trial: &mut Trial<'_>) -> Result<(), Error> {
 
 /// H55.
 pub fn overlap(trial: &mut Trial<'_>) -> Result<(), Error> {
-    let (side, layers, young) = (0.02, 4.0, 3e3);
-    let edge = side / layers;
-    let c = (of_waves(young, 0.45) / 1000.0_f64).sqrt();
-    for &share in trial.some(&[0.3, 0.05]) {
+    for &(share, young, layers) in trial.some(&[(0.3, 3e3, 4), (0.05, 3e3, 4), (0.2, 2e4, 3)]) {
+        let (elements, side) = (trial.configuration.elements_name(), 0.02);
+        let edge = side / f64::from(layers);
+        let c = (of_waves(young, 0.45) / 1000.0_f64).sqrt();
         let depth = share * edge;
         for table in [true, false] {
-            let mut sets = trial.elements_of(&["other"]);
+            let mesh = |body: &str, cells: u32| {
+                format!(
+                    "bodies.{body}.mesh=Box(size: ({side}, {side}, {side}), cells: ({cells}, {cells}, {layers}), elements: {elements})"
+                )
+            };
+            let mut sets = vec![
+                mesh("body", layers),
+                mesh("other", layers - 1),
+                format!("materials.tissue.neo_hookean=Young(young: {young}, poisson: 0.45)"),
+            ];
             sets.push(match table {
                 true => format!("tools.table.at=(0, 0, {depth})"),
                 false => format!("bodies.other.translate=(0, 0, {})", side - depth),
@@ -72,7 +92,7 @@ pub fn overlap(trial: &mut Trial<'_>) -> Result<(), Error> {
                 most = most.max(energies.kinetic + energies.strain + energies.hourglass);
             }
             let by = if table { "a table" } else { "another cube" };
-            let what = |what: &str| format!("{what}, {share} of an edge inside {by}");
+            let what = |what: &str| format!("{what}, {share} of an edge inside {by}, {young} Pa");
             trial.most(what("energy gained over that of a wave"), most / bound, 1.0);
             let left = match table {
                 true => simulation.tool("table")?.penetration,
@@ -82,6 +102,7 @@ pub fn overlap(trial: &mut Trial<'_>) -> Result<(), Error> {
             trial.depth(what("inside at the end (m)"), left, allowed);
         }
     }
+    let (side, edge) = (0.02, 0.005);
     let deep = 0.6 * edge;
     let table = trial.start(&[format!("tools.table.at=(0, 0, {deep})")]);
     trial.refused(".6 of an edge inside a table", table, &["inside the tool `table`", "nodes: "]);

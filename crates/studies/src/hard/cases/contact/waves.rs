@@ -1,10 +1,9 @@
 //! Waves that contact sends: bars that meet, a cube that is dropped.
 
 use super::super::super::Trial;
-use super::measures::{gone, kinetic_and_spent, mass, momentum, of_waves};
+use super::measures::{gone, kinetic_and_spent, last_window, mass, momentum, of_waves};
 use sinew::Error;
 use sinew::Simulation;
-use sinew::components::Clock;
 
 const SIDE: f64 = 0.01;
 const DENSITY: f64 = 1000.0;
@@ -34,13 +33,6 @@ struct Hit {
     mean: f64,
     impulse: f64,
     least: f64,
-}
-
-/// How long (s) forces of the last step acted: from the middle of the step before, whatever their lengths were.
-fn last_window(simulation: &Simulation) -> f64 {
-    let clock = simulation.world().resource::<Clock>();
-    let (from, to) = clock.window_at(clock.step - 1);
-    to - from
 }
 
 /// Runs for 1.4 times the time that two waves along the bar take, and notes the force (N) that `felt` tells.
