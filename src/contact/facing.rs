@@ -99,10 +99,10 @@ impl Surfaces {
             let mut others = triangles.iter().zip(&seen).filter(|(_, (distance, _))| *distance < farthest);
             // those that show it are not all in shortlists; beyond a rim there are none, and what is outside there is
             // so as far as it is away
-            if !others.any(|(&other, _)| self.shares_part(other, triangle, part))
-                && !(seen[number].0 > reach(triangle) && self.is_outside((now, at), (triangle, part)))
-                && !self.goes_on_nearer((now.places, at), (triangle, part), farthest)
-            {
+            let is_told = others.any(|(&other, _)| self.shares_part(other, triangle, part))
+                || seen[number].0 > reach(triangle) && self.is_outside((now, at), (triangle, part))
+                || self.goes_on_nearer((now.places, at), (triangle, part), farthest);
+            if !is_told {
                 return false;
             }
         }
