@@ -379,7 +379,7 @@ fn copies_that_touch_at_rest_meet() {
         simulation.finish().unwrap();
         let u = simulation.displacements("b").unwrap();
         let lowest = u.iter().map(|u| u.z).fold(0.0, f64::min);
-        // a cube under its weight is a few micrometres lower; one that falls freely is 44 cm
-        assert!(lowest > -2e-5 && lowest < -1e-7, "{more}: {lowest}");
+        // under its weight, which comes at once, its top goes down by 2 ρ g H²/2E = 33 µm; one that falls goes 44 cm
+        assert!(lowest > -3.6e-5 && lowest < -1e-7, "{more}: {lowest}");
     }
 }
