@@ -129,7 +129,10 @@ impl Simulation {
             }
         }
         // the scene may last longer than that of the snapshot
-        let last_step = clock.step_nearest(self.scene.duration);
+        let duration = self.scene.duration;
+        let chosen =
+            self.solver.step_control().and_then(|control| control.last_step(&clock, clock.time_step, duration));
+        let last_step = chosen.unwrap_or_else(|| clock.step_nearest(duration));
         self.facts.steps = last_step;
         self.world.resource_scope(|world, mut observer: Mut<Observer>| observer.go_on(world, last_step))?;
         if let (Some(follower), Some(found)) = (self.solver.follower_mut(), state.found) {

@@ -21,15 +21,7 @@ impl Solvers {
     /// The scene solved so, its implicit steps of a length (s).
     pub fn put_into(mut self, text: &str, step: f64, temper: Temper) -> String {
         if text.contains("analysis: Static(") {
-            let r = &mut self.rng;
-            let arc = match r.u8(..4) {
-                0 => {
-                    let (first, longest) = (size(r, 1e-3, 1.0), size(r, 1e-5, 0.1));
-                    format!("arc: (first: {first:?}, longest: {longest:?}, points: {}), ", r.u64(1..30))
-                }
-                _ => String::new(),
-            };
-            return text.replacen("analysis: Static(", &format!("analysis: Static(method: Newton, {arc}"), 1);
+            return text.replacen("analysis: Static(", "analysis: Static(method: Newton, ", 1);
         }
         let text = match self.rng.bool() {
             true => text.replacen("start: Equilibrium(", "start: Equilibrium(method: Newton, ", 1),

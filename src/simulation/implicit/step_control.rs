@@ -143,9 +143,13 @@ impl StepControl {
         if (length - clock.time_step).abs() <= SAME * clock.time_step {
             return None;
         }
-        let to_go = (duration - time) / length;
-        let last = (duration > time + self.smallest).then(|| clock.step + (to_go - WHOLE).ceil().max(1.0) as u64);
-        Some((length, last))
+        Some((length, self.last_step(clock, length, duration)))
+    }
+
+    /// The step that ends the scene by such a length (s); `None` where it has ended.
+    pub fn last_step(&self, clock: &Clock, length: f64, duration: f64) -> Option<u64> {
+        let left = duration - clock.time();
+        (left > self.smallest).then(|| clock.step + (left / length - WHOLE).ceil().max(1.0) as u64)
     }
 
     /// A step of a length (s) was not found. Whether a shorter one may be.
