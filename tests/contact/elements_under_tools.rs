@@ -16,8 +16,8 @@ fn slid(sin: f64, cos: f64, friction: f64, damping: f64) -> f64 {
 }
 
 /// A block on a slope that gravity stands in for, at angles below and beyond that of friction. Ten-node tetrahedra have
-/// nodes in two layers, and with ν = .45 ring as they slide until they hop (Adams 1995), 8 % too far: with ν = 0 nothing
-/// does.
+/// nodes in two layers, and with ν = .45 ring as they slide until they hop (Adams 1995), 8 % too far: with ν = 0
+/// nothing does.
 #[test]
 fn blocks_of_every_kind_of_element_stick_and_slide_on_a_tool() {
     let (friction, damping, height, young) = (0.5, 40.0, 0.01, 1e4);

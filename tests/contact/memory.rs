@@ -5,9 +5,9 @@ use crate::configurations::ELEMENTS;
 use sinew::components::Precision;
 use sinew::systems::Registry;
 
-/// Bytes that `surface_contact` keeps for each face of two blocks, after some steps: columns of contact between surfaces,
-/// trees, lists and what is kept from step to step. Either they are far from each other, or a sixth of the surface of
-/// each lies on the other.
+/// Bytes that `surface_contact` keeps for each face of two blocks, after some steps: columns of contact between
+/// surfaces, trees, lists and what is kept from step to step. Either they are far from each other, or a sixth of the
+/// surface of each lies on the other.
 fn bytes_a_face(elements: &str, cells: u32, contact: &str, far: bool) -> f64 {
     let block = |at: f64, cells: u32| {
         format!(
@@ -29,9 +29,9 @@ fn bytes_a_face(elements: &str, cells: u32, contact: &str, far: bool) -> f64 {
     explained.contacts.iter().find(|found| found.system == "surface_contact").unwrap().bytes_a_face
 }
 
-/// 400 bytes a face with `Nodes` and 1000 with `Faces` are aimed at, and kept where nothing is near. Where a sixth of the
-/// surface touches, lists and what is known of each point that is near take more: by a tenth with nodes, with points of
-/// triangles, which are three times as many, by up to a half.
+/// 400 bytes a face with `Nodes` and 1000 with `Faces` are aimed at, and kept where nothing is near. Where a sixth of
+/// the surface touches, lists and what is known of each point that is near take more: by a tenth with nodes, with
+/// points of triangles, which are three times as many, by up to a half.
 fn keeps_few(elements: &[&str], cells: &[u32]) {
     for (points, far, bound) in
         [("Nodes", true, 400.0), ("Faces", true, 1000.0), ("Nodes", false, 440.0), ("Faces", false, 1500.0)]

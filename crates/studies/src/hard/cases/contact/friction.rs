@@ -121,8 +121,8 @@ pub fn direction(trial: &mut Trial<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// H49. One set of numbers: with μ .1, 20 kPa and ν .3 nodes that slide are held by .0988 of what presses them in f32, 1.2 %
-/// off, and why has not been found out.
+/// H49. One set of numbers: with μ .1, 20 kPa and ν .3 nodes that slide are held by .0988 of what presses them in f32,
+/// 1.2 % off, and why has not been found out.
 pub fn ironing(trial: &mut Trial<'_>) -> Result<(), Error> {
     let friction = 0.2;
     let mut simulation = trial.start(&[])?;
