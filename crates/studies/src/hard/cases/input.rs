@@ -15,7 +15,7 @@ pub fn bad_numbers(trial: &mut Trial<'_>) -> Result<(), Error> {
         ("an implicit step that is no number", "solver=Implicit(step: NaN)", ["step", "NaN"]),
         ("no iteration of Newton's", "solver=Implicit(newton: 0)", ["newton", "at least 1"]),
         ("a tolerance of 1", "solver=Implicit(tolerance: 1)", ["tolerance", "below 1"]),
-        ("no pass in a step", "solver=Implicit(budget: 0)", ["budget", "at least 1"]),
+        ("no pass in a step", "solver=Implicit(budget: 0)", ["budget", "at least 3"]),
         ("a share above 1", "solver=Implicit(scheme: GeneralizedAlpha(high_frequencies: 2))", ["from 0 to 1", "2"]),
     ];
     let of_steps = if trial.is_implicit() { &of_steps[..] } else { &[] };
