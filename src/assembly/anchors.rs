@@ -3,8 +3,7 @@
 use super::BodyParts;
 use super::contacts::edge;
 use crate::components::Anchor;
-use crate::mesh::Locator;
-use crate::mesh::OnTriangle;
+use crate::mesh::{Locator, OnTriangle};
 use crate::scene::diagnostic::Diagnostics;
 use crate::skins::Embedding;
 use glam::DVec3;

@@ -4,8 +4,7 @@
 use super::{Assembly, BodyParts};
 use crate::components::*;
 use crate::contact::{TURNED_AWAY, Tree};
-use crate::mesh::OnTriangle;
-use crate::mesh::{Locator, Mesh};
+use crate::mesh::{Locator, Mesh, OnTriangle};
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::Contact;
 use crate::skins::normals;

@@ -29,6 +29,12 @@ pub(super) struct Motion {
     pub free: Vec<bool>,
 }
 
+/// The accelerations of a body's axes before a step (m/s²), as its column has them; 0 where none are carried on.
+pub(super) fn acceleration_before(world: &World, body: Entity) -> impl Fn(usize) -> f64 + '_ {
+    let column = world.get::<Acceleration>(body);
+    move |at| column.map_or(0.0, |acceleration| acceleration.get(at))
+}
+
 impl Axes {
     /// Of all bodies of a world, in the order of [`frequency::bodies`](super::super::frequency::bodies).
     pub fn of(world: &mut World) -> Self {
@@ -70,12 +76,9 @@ impl Axes {
         self.bodies.iter().copied().zip(self.ranges.iter().cloned())
     }
 
-    /// Accelerations before a step (m/s²), of all axes; 0 where none are carried on.
+    /// Accelerations before a step (m/s²), of all axes.
     pub fn accelerations<'w>(&'w self, world: &'w World) -> impl Iterator<Item = f64> + 'w {
-        self.each().flat_map(|(body, range)| {
-            let column = world.get::<Acceleration>(body);
-            (0..range.len()).map(move |at| column.map_or(0.0, |acceleration| acceleration.get(at)))
-        })
+        self.each().flat_map(|(body, range)| (0..range.len()).map(acceleration_before(world, body)))
     }
 
     /// A motion that is not known yet.

@@ -1,11 +1,11 @@
 //! The equation of each axis in a step: its inertia, its damping, and what it is at a place.
 
-use super::axes::{Axes, Motion};
+use super::axes::{Axes, Motion, acceleration_before};
 use super::forces_before::ForcesBefore;
 use super::formula::Formula;
 use super::place::Place;
 use super::vectors::with_numbers;
-use crate::components::{Acceleration, Reals};
+use crate::components::Reals;
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 
@@ -128,10 +128,9 @@ impl Before<'_> {
     fn each_constant(&self, place: &Place<'_>, mut take: impl FnMut(usize, f64)) {
         let Place { formula, h, motion, .. } = place;
         for (body, range) in self.axes.each() {
-            let column = self.world.get::<Acceleration>(body);
-            let acceleration = |axis: usize| column.map_or(0.0, |column| column.get(axis - range.start));
+            let acceleration = acceleration_before(self.world, body);
             for axis in range.clone() {
-                let before = || (acceleration(axis), self.forces.net(axis));
+                let before = || (acceleration(axis - range.start), self.forces.net(axis));
                 take(axis, motion.constant(formula, *h, axis, before));
             }
         }

@@ -1,9 +1,9 @@
 //! Axes that closed tools hold: held as if they were told where to go.
 
-use super::axes::{Axes, Motion};
+use super::axes::{Axes, Motion, acceleration_before};
 use super::place::Place;
 use super::vectors::resize;
-use crate::components::{Acceleration, DisplacementCompensation, ExternalForce, Grasps, InternalForce, Reals};
+use crate::components::{DisplacementCompensation, ExternalForce, Grasps, InternalForce, Reals};
 use crate::systems::{HeldNode, held_in_step, note_held};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -59,8 +59,8 @@ impl Grasped {
         for (node, first, own) in &self.0 {
             let of_axis = |i: usize| {
                 let axis = first + i;
-                let acceleration = world.get::<Acceleration>(node.body).map_or(0.0, |all| all.get(3 * node.row + i));
-                let (before, velocity) = (motion.velocity(axis), place.arrival(axis, acceleration).0);
+                let acceleration = acceleration_before(world, node.body);
+                let (before, velocity) = (motion.velocity(axis), place.arrival(axis, acceleration(3 * node.row + i)).0);
                 let (mass, damping) = (motion.mass.get(axis / 3), motion.damping(axis));
                 let inertial = mass * (velocity - before) / h + damping * velocity;
                 let inertial = if formula.is_of_rest() { 0.0 } else { inertial };

@@ -1,7 +1,7 @@
 //! Where axes are at the end of a step, as what is added to where their velocity leads: that is found to the digits of
 //! what forces do, and not of how far axes go.
 
-use super::axes::{Axes, Motion};
+use super::axes::{Axes, Motion, acceleration_before};
 use super::formula::Formula;
 use super::vectors::{none, with_numbers};
 use crate::components::*;
@@ -100,9 +100,8 @@ impl<'a> Place<'a> {
     pub fn write_steps(&self, axes: &Axes, world: &mut World) {
         for (body, range) in axes.each() {
             let Some(mut step) = taken::<DisplacementIncrement>(world, body) else { continue };
-            let column = world.get::<Acceleration>(body);
-            let before = |at: usize| column.map_or(0.0, |acceleration| acceleration.get(at));
-            (0..range.len()).for_each(|at| step.set(at, self.step(range.start + at, before(at))));
+            let before = (0..range.len()).map(acceleration_before(world, body)).enumerate();
+            before.for_each(|(at, before)| step.set(at, self.step(range.start + at, before)));
             put(world, body, DisplacementIncrement(step));
         }
     }

@@ -102,8 +102,8 @@ impl Newton<'_, '_> {
                 // of what is moved as told the work may be of either sign, and what slides is rubbed by what presses
                 // it, of which a symmetric tangent does not know: it leads there where less is left
                 let arrives = touches && now <= if moves { DESCENT } else { FALLS } * *size;
-                let enough = now <= enough || self.left() == 0 && now < *size;
-                if now.is_finite() && (descends || arrives || self.settings.newton == 1 || enough) {
+                let is_enough = now <= enough || self.left() == 0 && now < *size;
+                if now.is_finite() && (descends || arrives || self.settings.newton == 1 || is_enough) {
                     update(&mut self.space.to_go, |_, left| left * (1.0 - share));
                     *size = now;
                     return Ok(tried);
