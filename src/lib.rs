@@ -47,10 +47,10 @@ pub use output::Folder;
 pub use scene::SceneFile;
 pub use simulation::explain;
 pub use simulation::{
-    Advanced, BackendChoice, ColumnView, Ended, Equilibrium, FieldName, GpuColumn, Grab, GrabId, Grip, ImplicitSteps,
-    InputChange, InputRecording, InputUse, InputValue, Inversions, Mode, Names, NodeSet, NodeState, Options, PathPoint,
-    Pick, PortUse, PoseChange, Preload, RealTime, Simulation, Stability, StepHistory, Summary, SurfaceContactUse,
-    SystemTime, Unloaded, Unloading, UnloadingStep, unload,
+    Advanced, BackendChoice, ColumnView, Ended, Equilibrium, FieldName, Frames, GpuColumn, Grab, GrabId, Grip,
+    ImplicitSteps, InputChange, InputRecording, InputUse, InputValue, Inversions, Mode, Names, NodeSet, NodeState,
+    Options, PathPoint, Pick, PortUse, PoseChange, Preload, RealTime, Simulation, Stability, StepHistory, Summary,
+    SurfaceContactUse, SystemTime, Unloaded, Unloading, UnloadingStep, unload,
 };
 pub use snapshot::Snapshot;
 

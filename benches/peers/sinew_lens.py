@@ -50,8 +50,7 @@ def main():
             rows = list(csv.reader(probe))
     along = next(place for place, name in enumerate(rows[0]) if name.strip().startswith(("z", "uz", "u_z")) or " z" in name)
     history = [float(row[along]) for row in rows[1:]]
-    implicit = summary["implicit"]
-    tell("sinew", "this tree", SCHEMES[asked.scheme], summary["time_step"], summary["solving_seconds"], implicit and implicit["longest_step"], history)
+    tell("sinew", "this tree", SCHEMES[asked.scheme], summary["time_step"], summary["solving_seconds"], summary["implicit"] and summary["frames"]["longest"], history)
 
 
 if __name__ == "__main__":

@@ -51,9 +51,9 @@ pub(super) fn insert_node_columns(
     let moved = scene.constraints.iter().any(|constraint| matches!(constraint, Constraint::Prescribed { .. }));
     if !scene.is_static() && scene.output.energies_every.is_some() {
         entity.insert(Work(Reals::zeros(precision, WORK_NUMBERS * count)));
-    } else if !scene.is_static() && !scene.is_implicit() && !scene.guards.off.contains(&Guard::Energy) {
+    } else if !scene.is_static() && !scene.guards.off.contains(&Guard::Energy) {
         entity.insert(InternalWork::zero(count));
-        if moved {
+        if moved && !scene.is_implicit() {
             entity.insert(PreviousPrescribedIncrement(vec![0.0; 3 * count]));
         }
     }

@@ -54,7 +54,7 @@ columns! {
     InternalWork(Vec<f32>) = "internal_work", State of Account, Other, in "node_diagnostics";
     /// Displacement of the last step along prescribed axes (m), which `boundary` has written over in
     /// [`DisplacementIncrement`], in f32 whatever the run's precision: a vector a node. Exists with [`InternalWork`]
-    /// where nodes are prescribed.
+    /// where nodes are prescribed and steps are explicit.
     PreviousPrescribedIncrement(Vec<f32>) = "previous_prescribed_increment", State of Account, Nodes(3), increments: All, in "node_diagnostics";
     /// Bits: which of those node systems that choose their nodes have chosen a node. Exists when there are some.
     ChosenBy(Vec<u32>) = "chosen_by", State of Own, Nodes(1);
@@ -84,6 +84,15 @@ impl InternalWork {
     /// The work (J).
     pub fn total(&self) -> f64 {
         self.iter().map(|&part| f64::from(part)).sum()
+    }
+
+    /// Adds work of the whole body (J) to the first sum.
+    pub fn add(&mut self, work: f64) {
+        if let [sum, left_out, ..] = &mut *self.0 {
+            let all = f64::from(*sum) + f64::from(*left_out) + work;
+            *sum = all as f32;
+            *left_out = (all - f64::from(*sum)) as f32;
+        }
     }
 }
 

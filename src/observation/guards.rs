@@ -1,6 +1,7 @@
 //! Guards: what kernels found wrong in passing, and what a sample of energies and elements shows, told in the author's
 //! words.
 
+use super::balance::{balance, rattling, shorter_steps};
 use super::rounding::Rounding;
 use super::sample::{Sample, sample, sample_result};
 use crate::backend::cpu::BlockSums;
@@ -187,129 +188,15 @@ pub(super) fn check_balance(
         100.0 * made / scale,
         100.0 * stop
     );
-    let cause = "a time step that is too large (lower integration.safety), or a load or motion too sudden for the mesh (use a \
-                 ramp)";
+    let cause = format!(
+        "a time step that is too large ({}), or a load or motion too sudden for the mesh (use a ramp)",
+        shorter_steps(world)
+    );
     let criterion = Criterion { value: Some(made / scale), limit: Some(stop), ..Criterion::of("energy") };
     debug_assert!(clock.relaxation.is_none());
     let body = bodies(world);
-    let broken = instability(world, settings, body, what, cause, criterion, good_until);
+    let broken = instability(world, settings, body, what, &cause, criterion, good_until);
     Err(Error::Unstable(Box::new(broken)))
-}
-
-/// Energy (J) that has come from nothing since the start (negative: gone), and what elements hold. Of viscous parts
-/// only what remains in the long term is known to be held; the rest may have been lost, so nothing is said of energy
-/// that went.
-///
-/// Energies are those of the middle of the last step, and its second half is not counted yet: of a mode of frequency ω
-/// that is (ωΔt/2)² of its kinetic energy, never more than that where the step is stable. Where something begins to
-/// move at once (a tool touches it, a weight is let go) this is all there is, and says nothing. So what is no more than
-/// the kinetic energy counts once it has lasted [`GuardMemory::DOUBT`] steps, or at the end.
-fn balance(memory: &mut GuardMemory, seen: &Sample, settings: &GuardSettings, last: bool, world: &World) -> (f64, f64) {
-    let Held { lasting: held, all, viscous } = held_by(seen, world);
-    memory.scale = memory.scale.max(all).max(seen.internal_work.abs());
-    if settings.limits.off.contains(&Guard::Energy) {
-        return (0.0, held);
-    }
-    let made = held - seen.internal_work - memory.at_start;
-    let made = if viscous || settings.removal { made.max(0.0) } else { made };
-    let limit = settings.limits.energy.warn;
-    // what rounding alone may have made of it is no imbalance
-    let share = made.signum() * (made.abs() - memory.rounding).max(0.0) / memory.scale;
-    let step = world.resource::<Clock>().step;
-    let explained = memory.scale > 0.0 && share > limit && made <= seen.kinetic;
-    let since = memory.in_doubt.take().filter(|_| explained).unwrap_or(step);
-    if explained && !last && step < since + GuardMemory::DOUBT {
-        memory.in_doubt = Some(since);
-        return (0.0, held);
-    }
-    if memory.scale > 0.0 && share.abs() > memory.imbalance.abs() {
-        memory.imbalance = share;
-    }
-    if memory.scale > 0.0 && share.abs() > limit {
-        let way = if made > 0.0 { "came from nothing" } else { "went into nothing" };
-        let message = format!(
-            "{:.1} % of the largest energy so far {way} ({:.1} % are a warning, guards.energy.warn): results are that \
-             uncertain; lower integration.safety, use ramps, or a finer mesh",
-            100.0 * share.abs(),
-            100.0 * limit
-        );
-        warn(memory, world, "energy", "", share, limit, message);
-    }
-    (made, held)
-}
-
-/// What is held (J).
-struct Held {
-    /// By elements, and of viscous ones what remains in the long term.
-    lasting: f64,
-    /// By elements and by motion.
-    all: f64,
-    /// Whether a part is viscous.
-    viscous: bool,
-}
-
-fn held_by(seen: &Sample, world: &World) -> Held {
-    let mut held = Held { lasting: 0.0, all: seen.kinetic, viscous: false };
-    for (entity, sums) in &seen.parts {
-        let share = |terms: &[(f64, f64)]| terms.iter().map(|(alpha, _)| alpha).sum::<f64>();
-        let relaxed = |prony: &Prony| share(&prony.terms).max(share(&prony.volumetric));
-        let of_all = world.get::<Block>(*entity).and_then(|block| world.get::<Prony>(block.material));
-        // of copies that differ, at least
-        let relaxed = match world.get::<PerCopyMemory>(*entity) {
-            None => of_all.map_or(0.0, relaxed),
-            Some(PerCopyMemory(all)) => all.iter().filter_map(|of| of.prony.as_ref()).map(relaxed).fold(0.0, f64::max),
-        };
-        let damped = world
-            .get::<Block>(*entity)
-            .is_some_and(|block| world.entity(block.material).contains::<StiffnessDamping>());
-        held.viscous |= relaxed > 0.0 || damped;
-        held.lasting += (1.0 - relaxed) * sums.strain + sums.hourglass;
-        held.all += sums.strain + sums.hourglass;
-    }
-    held
-}
-
-/// What elements hold as the balance of energy counts it (J), of viscous ones what remains in the long term, in the
-/// middle of the last step.
-///
-/// # Errors
-/// What the GPU says.
-pub fn held_for_long(world: &mut World) -> Result<f64, Error> {
-    let seen = sample(world)?;
-    Ok(held_by(&seen, world).lasting)
-}
-
-/// Notes what bodies hold before the first step, from which on imbalances count.
-///
-/// # Errors
-/// What the GPU says.
-pub fn begin(world: &mut World) -> Result<(), Error> {
-    let seen = sample(world)?;
-    let held = held_by(&seen, world);
-    let rounding = Rounding::of(world);
-    let mut memory = world.get_resource_or_init::<GuardMemory>();
-    (memory.at_start, memory.scale) = (held.lasting, held.all);
-    memory.rounding = rounding.of_energy(&seen.reach);
-    world.insert_resource(rounding);
-    Ok(())
-}
-
-/// Warns of springs of contact that make energy (J): what touches and lets go again and again may get more back from
-/// them than it gave.
-fn rattling(memory: &mut GuardMemory, made: f64, settings: &GuardSettings, world: &World) {
-    let limit = settings.limits.energy.warn;
-    let share = (made - memory.rounding) / memory.scale;
-    if settings.limits.off.contains(&Guard::Energy) || memory.scale <= 0.0 || share.is_nan() || share <= limit {
-        return;
-    }
-    let message = format!(
-        "springs of contact gave back {:.1} % of the largest energy so far more than they got ({:.1} % are a warning, \
-         guards.energy.warn): what begins inside is pushed out, or something rattles; a smaller `share`, `damping` of the \
-         law, a smaller integration.safety, or `law: Kinematic`, which makes none",
-        100.0 * share,
-        100.0 * limit
-    );
-    warn(memory, world, "contact", "", share, limit, message);
 }
 
 fn hourglass(memory: &mut GuardMemory, seen: &Sample, settings: &GuardSettings, world: &World) {
@@ -337,7 +224,15 @@ fn hourglass(memory: &mut GuardMemory, seen: &Sample, settings: &GuardSettings, 
     }
 }
 
-fn warn(memory: &mut GuardMemory, world: &World, criterion: &str, part: &str, value: f64, limit: f64, message: String) {
+pub(super) fn warn(
+    memory: &mut GuardMemory,
+    world: &World,
+    criterion: &str,
+    part: &str,
+    value: f64,
+    limit: f64,
+    message: String,
+) {
     if memory.warnings.iter().any(|notice| notice.criterion == criterion && notice.part == part) {
         return;
     }

@@ -1,6 +1,7 @@
 //! Looking at a run: probes, energies, fields and guards, when they are due. Reads only.
 
 mod attachments;
+mod balance;
 mod contact_fields;
 mod contacts;
 mod element_fields;
@@ -22,11 +23,12 @@ mod tools;
 mod track;
 
 pub use attachments::{AttachmentReading, read_attachment};
+pub use balance::{begin as begin_to_guard, held_for_long};
 pub use contacts::{ContactReading, read_contact};
 pub use energies::{energies, energy_header, mass, removed_momentum};
 pub use fields::{BodyFields, body_fields, internal_forces};
 pub use frame::{WrittenFields, field_of, write as write_fields, write_whole};
-pub use guards::{GuardSettings, begin as begin_to_guard, held_for_long};
+pub use guards::GuardSettings;
 pub use heading::Heading;
 pub use path::{PATH, columns_of_probe};
 pub use probes::{header, observe_probe, volume_left};

@@ -1,5 +1,6 @@
 //! What the guards sample: energies of parts, the smallest J, the fastest node. On the CPU by vector kernels, on the
-//! GPU by kernels whose sums of sixty-four rows each are brought to the host.
+//! GPU by kernels whose sums of sixty-four rows each are brought to the host, but for implicit steps, whose state the
+//! host has.
 
 use crate::backend::cpu::{BlockLaw, BlockSums, Cpu, GuardColumns, run_guard};
 use crate::backend::device::{Device, bring_to_host};
@@ -15,7 +16,7 @@ use bevy_ecs::prelude::*;
 #[derive(Resource, Default)]
 pub struct GuardKernels(pub Vec<KernelId>);
 
-/// A sample of all bodies, in the middle of the last step.
+/// A sample of all bodies, where velocities are: in the middle of the last step, of implicit ones at its end.
 #[derive(Clone, Debug, Default)]
 pub struct Sample {
     /// ½ m v² (J).
@@ -38,6 +39,8 @@ pub fn sample(world: &mut World) -> Result<Sample, Error> {
     let kernels = world.get_resource::<GuardKernels>().map(|kernels| kernels.0.clone()).unwrap_or_default();
     let mut sample = Sample { internal_work: internal_work(world)?, ..Sample::default() };
     if kernels.is_empty() {
+        let wanted = [Displacement::NAME, DisplacementIncrement::NAME, Mass::NAME, RestShape::NAME];
+        bring_to_host(world, |_, name| wanted.contains(&name))?;
         sample_nodes(&mut sample, world);
         sample_elements(&mut sample, world)?;
         return Ok(sample);
@@ -123,7 +126,7 @@ fn sample_elements(sample: &mut Sample, world: &mut World) -> Result<(), Error> 
     let mut middle: Option<(Entity, Displacement)> = None;
     for (entity, body) in blocks {
         if middle.as_ref().is_none_or(|(of, _)| *of != body) {
-            middle = middle_of_step(world, body).map(|displacement| (body, displacement));
+            middle = where_velocities_are(world, body).map(|displacement| (body, displacement));
         }
         let Some((_, displacement)) = &middle else {
             return Err(missing("a column of a body"));
@@ -157,9 +160,12 @@ pub fn sample_result(world: &mut World) -> Result<Vec<(Entity, BlockSums)>, Erro
     Ok(blocks.into_iter().filter_map(sums).collect())
 }
 
-/// Displacements in the middle of the last step, in the run's precision.
-fn middle_of_step(world: &World, body: Entity) -> Option<Displacement> {
+/// Displacements in the middle of the last step, of implicit ones at its end, in the run's precision.
+fn where_velocities_are(world: &World, body: Entity) -> Option<Displacement> {
     let (u, step) = (world.get::<Displacement>(body)?, world.get::<DisplacementIncrement>(body)?);
+    if world.resource::<Clock>().velocities_at_ends {
+        return Some(u.clone());
+    }
     Some(Displacement(match (&u.0, &step.0) {
         (Reals::F32(u), Reals::F32(step)) => Reals::F32(u.iter().zip(step).map(|(u, d)| u - 0.5 * d).collect()),
         (Reals::F64(u), Reals::F64(step)) => Reals::F64(u.iter().zip(step).map(|(u, d)| u - 0.5 * d).collect()),

@@ -4,6 +4,7 @@ use super::history::History;
 use super::inputs::Tape;
 use super::interval::RunInterval;
 use super::known::Known;
+use super::observer::observer;
 use super::options::{BackendChoice, Chosen, choose};
 use super::plan::{Over, Pass, Plan, each_once};
 use super::prepare::{Prepared, add_loads, counts, prepare};
@@ -19,9 +20,9 @@ use crate::backend::gpu::Gpu;
 use crate::backend::kernel::KernelId;
 use crate::components::*;
 use crate::error::Error;
-use crate::observation::{GuardKernels, GuardSettings, Observer, Track, WrittenFields};
+use crate::observation::{GuardKernels, Observer, WrittenFields};
 use crate::scene::SceneFile;
-use crate::scene::schema::{ContactLaw, Guard, Scene};
+use crate::scene::schema::Scene;
 use crate::snapshot::{Keeping, identity};
 use crate::systems::{
     HostSystem, NodePass, NodeRows, OnHost, Phase, Registry, System, give_shares, node_pass, patch_pass, shared_pass,
@@ -184,6 +185,8 @@ impl Simulation {
             lineage: Default::default(),
             seconds_a_step: None,
             elapsed: Duration::ZERO,
+            running: None,
+            frames: Default::default(),
             began: (0, 0.0),
             failure: None,
         })
@@ -232,7 +235,8 @@ fn kernels_on(
     world: &mut World,
 ) -> Result<Vec<Vec<KernelId>>, Error> {
     world.insert_resource(Device::new(gpu));
-    if world.resource::<Clock>().relaxation.is_none() {
+    let clock = world.resource::<Clock>();
+    if clock.relaxation.is_none() && !clock.velocities_at_ends {
         crate::systems::add_guard_columns(world);
         let kernels_of_guards = Device::prepare(world, crate::systems::guard_kernels)?;
         world.insert_resource(GuardKernels(kernels_of_guards));
@@ -327,35 +331,6 @@ fn host_job(system: HostSystem, schedule: &[Scheduled<'_>], plan: &Plan, pass: &
         observes: first.system.observes,
         writes: each_once(plan.systems_of(pass).flat_map(|system| &system.writes).copied()),
     }
-}
-
-fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> Observer {
-    let every = |time: f64| Cadence::new(time, clock.time_step);
-    let mut observer = Observer::default();
-    observer.fields = every(scene.scene.fields_every());
-    observer.energy = scene.scene.output.energies_every.map(|time| Track::new(every(time)));
-    observer.touches = scene.scene.touches();
-    observer.snapshots = scene.scene.output.snapshots_every.filter(|_| !scene.scene.is_static()).map(every);
-    let mut limits = scene.scene.guards.clone();
-    let without_energy = scene.scene.materials.values().any(|material| material.by_frame().is_some());
-    if scene.scene.is_implicit() || without_energy {
-        // what central differences keep is no measure of other formulas, nor of forces that have no energy
-        limits.off.push(Guard::Energy);
-    }
-    observer.guard_settings = GuardSettings {
-        limits,
-        beyond: scene.scene.integration.beyond_stable_step && clock.relaxation.is_none(),
-        foreign: false,
-        removal: world.query::<&Alive>().iter(world).next().is_some(),
-        springs: scene.scene.contacts.iter().any(|contact| contact.law() != ContactLaw::Kinematic)
-            && clock.relaxation.is_none()
-            && !clock.velocities_at_ends,
-    };
-    observer.to_rest = clock.relaxation.is_some();
-    observer.follows_path = scene.scene.follows_path();
-    observer.last_step = if clock.relaxation.is_some() { u64::MAX } else { steps };
-    observer.track_probes(world);
-    observer
 }
 
 /// Columns that custom systems write although the scene does not call for them.

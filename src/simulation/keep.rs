@@ -43,7 +43,7 @@ impl Simulation {
         self.forget_later(snapshot.time(), ours);
         let clock = *self.world.resource::<Clock>();
         self.began = (clock.step, clock.time());
-        (self.elapsed, self.metronome) = (Duration::ZERO, Default::default());
+        (self.elapsed, self.metronome, self.frames) = (Duration::ZERO, Default::default(), Default::default());
         self.failure = None;
         let mut observer = self.world.resource_mut::<Observer>();
         (observer.good_until, observer.checked_at) = (clock.time(), None);

@@ -15,6 +15,7 @@ mod costly;
 mod damped_step;
 pub mod explain;
 mod follow;
+mod frames;
 mod frequency;
 mod gpu_column;
 mod grab;
@@ -31,6 +32,7 @@ mod modes;
 mod names;
 mod nodal;
 mod node_set;
+mod observer;
 mod options;
 mod outputs;
 mod parameters;
@@ -67,6 +69,7 @@ pub use budget::{Advanced, Ended};
 pub use column_view::ColumnView;
 pub use contact_use::SurfaceContactUse;
 pub use follow::StepHistory;
+pub use frames::Frames;
 pub use gpu_column::GpuColumn;
 pub use grab::{Grab, GrabId, Grip};
 #[doc(hidden)]
@@ -131,6 +134,9 @@ pub struct Simulation {
     /// What a step takes on the clock on the wall (s), where that was measured.
     seconds_a_step: Option<f64>,
     elapsed: Duration,
+    /// When that began which `elapsed` does not have yet.
+    running: Option<web_time::Instant>,
+    frames: frames::FrameClock,
     /// Step and time (s) from which `elapsed` counts: of the start, or of a snapshot that was gone on from.
     began: (u64, f64),
     /// How it broke down.

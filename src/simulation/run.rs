@@ -105,11 +105,19 @@ impl Simulation {
     pub fn advance(&mut self, count: u64) -> Result<(), Error> {
         self.settle()?;
         self.keep_start();
-        let started = Instant::now();
         let target = self.step_count().saturating_add(count);
-        let result = self.on_threads(|simulation| simulation.steps_to(target));
-        self.elapsed += started.elapsed();
+        let result = self.timed(|simulation| simulation.on_threads(|simulation| simulation.steps_to(target)));
         result.map_err(|error| self.note(error))
+    }
+
+    /// As a part of the run, whose time is taken.
+    fn timed<T>(&mut self, task: impl FnOnce(&mut Self) -> T) -> T {
+        let started = Instant::now();
+        self.running = Some(started);
+        let done = task(self);
+        self.running = None;
+        self.elapsed += started.elapsed();
+        done
     }
 
     /// From one of the threads that work, where there are several.
@@ -123,13 +131,12 @@ impl Simulation {
     /// [`Simulation::begin_step`] as a part of the run.
     fn begin_step_in_time(&mut self) -> Result<(), Error> {
         self.keep_start();
-        let started = Instant::now();
-        self.before_the_check()?;
-        // threads are not called together for nothing
-        let is_due = self.solver.next_check() <= self.step_count();
-        let followed = if is_due { self.on_threads(Self::follow) } else { Ok(()) };
-        self.elapsed += started.elapsed();
-        followed
+        self.timed(|simulation| {
+            simulation.before_the_check()?;
+            // threads are not called together for nothing
+            let is_due = simulation.solver.next_check() <= simulation.step_count();
+            if is_due { simulation.on_threads(Self::follow) } else { Ok(()) }
+        })
     }
 
     /// Says of a GPU that failed how far the run came.
@@ -172,10 +179,7 @@ impl Simulation {
     /// As [`Simulation::advance`].
     pub fn observe(&mut self) -> Result<(), Error> {
         self.settle()?;
-        let started = Instant::now();
-        let observed = self.observe_in_time();
-        self.elapsed += started.elapsed();
-        observed
+        self.timed(Self::observe_in_time)
     }
 
     /// [`Simulation::observe`] as a part of a run whose time is taken.

@@ -184,11 +184,13 @@ impl Simulation {
     pub(super) fn steps_to(&mut self, target: u64) -> Result<(), Error> {
         while self.step_count() < target {
             self.begin_step()?;
+            self.begin_frame();
             let step = self.step_count();
             let Some(until) = self.solver.until(step, || self.next_of_others()) else { return Ok(()) };
             if step < until {
                 self.some_steps(target.min(until))?;
                 self.end_batches()?;
+                self.end_frame();
             }
             if self.solver.check(&mut self.world, &mut self.entries)? {
                 self.world.resource_mut::<Observer>().last_step = self.step_count();
@@ -199,9 +201,9 @@ impl Simulation {
     }
 
     /// The next step before which somebody beside the solver has something to do: who sets inputs, who keeps states, a
-    /// hand at a port, the clock on the wall.
+    /// hand at a port, the clock on the wall, the end of a frame.
     fn next_of_others(&self) -> u64 {
         let kept = self.next_kept().max(self.step_count() + 1);
-        self.next_change().min(kept).min(self.ports.next_end()).min(self.next_tick())
+        self.next_change().min(kept).min(self.ports.next_end()).min(self.next_tick()).min(self.next_frame())
     }
 }

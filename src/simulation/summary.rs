@@ -58,6 +58,8 @@ pub struct Summary {
     pub writing_seconds: f64,
     /// Solving time over simulated time; below 1 is faster than real time.
     pub real_time_factor: f64,
+    /// How long frames of 10 ms of life took.
+    pub frames: Option<super::Frames>,
     /// Solving time a step (s).
     pub seconds_a_step: f64,
     /// Solving time an element and step (ns).
@@ -180,7 +182,7 @@ impl Simulation {
             .sum();
         let (steps, run) = (self.step_count(), self.elapsed.as_secs_f64());
         let writing = self.world.resource::<Observer>().writing.as_secs_f64();
-        let solving = (run - writing - self.metronome.waited().as_secs_f64()).max(0.0);
+        let solving = self.solving().as_secs_f64();
         let (first, since) = self.began;
         let a_step = solving / steps.saturating_sub(first).max(1) as f64;
         let names: Vec<String> = self.scene.tools.keys().cloned().collect();
@@ -221,6 +223,7 @@ impl Simulation {
             solving_seconds: solving,
             writing_seconds: writing,
             real_time_factor: solving / (self.time() - since).max(f64::MIN_POSITIVE),
+            frames: self.frames(),
             seconds_a_step: a_step,
             nanoseconds_an_element_and_step: a_step * 1e9 / facts.elements.max(1) as f64,
             systems: self.entries.iter().map(|entry| system_time(entry, &self.plan, facts.on_gpu)).collect(),

@@ -127,9 +127,7 @@ fn any_number_of_threads_gives_the_same_bits_and_counts() {
             let (_, mut simulation) = cube(solver, "Tet4", EFFECTS, 0.2, &options(Precision::F32, threads));
             let bits: Vec<[u64; 3]> =
                 simulation.displacements("b").unwrap().iter().map(|u| u.to_array().map(f64::to_bits)).collect();
-            let mut counts = simulation.implicit_steps().unwrap();
-            (counts.longest_step, counts.step_percentile_99) = (0.0, 0.0);
-            (bits, counts)
+            (bits, simulation.implicit_steps().unwrap())
         })
         .into();
     println!("{:?}", runs[0].1);

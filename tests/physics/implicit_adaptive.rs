@@ -141,9 +141,7 @@ fn steps_are_short_where_a_load_is_sudden() {
 /// Digits of the clock and of the state, and what was taken.
 fn told(simulation: &mut Simulation) -> (Vec<[u64; 3]>, u64, u64, ImplicitSteps) {
     let bits = simulation.displacements("b").unwrap().iter().map(|u| u.to_array().map(f64::to_bits)).collect();
-    let took = simulation.implicit_steps().unwrap();
-    let took = ImplicitSteps { longest_step: 0.0, step_percentile_99: 0.0, ..took };
-    (bits, simulation.step_count(), simulation.time().to_bits(), took)
+    (bits, simulation.step_count(), simulation.time().to_bits(), simulation.implicit_steps().unwrap())
 }
 
 #[test]
@@ -259,4 +257,35 @@ fn the_shortest_step_is_taken_and_warned_of() {
     near("the shortest step", simulation.implicit_steps().unwrap().smallest_step, 0.01, 0.01, 1e-9);
     let told = simulation.explain(&Registry::default()).unwrap().to_string();
     assert!(told.contains("steps are chosen so that the errors within 0.02 s add up to 0.000001"), "{told}");
+}
+
+/// Each 10 ms of life is a frame, or each step that is longer, whoever asks for how many steps; rest has none, and
+/// explicit steps on a GPU, which are not waited for.
+#[test]
+fn frames_of_a_run_are_counted() {
+    let cpu = options(Precision::F32, 1);
+    for solver in ["Explicit", "Implicit(step: 2e-3)", "Implicit(step: 0.02)"] {
+        let [one, other] = [false, true].map(|by_steps| {
+            let mut simulation = cube(solver, &cpu);
+            while by_steps && simulation.time() < 0.0996 {
+                simulation.advance(1).unwrap();
+            }
+            simulation.advance_to(0.3).unwrap();
+            let summary = simulation.summary("finished").unwrap();
+            let frames = summary.frames.unwrap();
+            assert!(0.0 < frames.percentile_99 && frames.percentile_99 <= frames.longest, "{solver}: {frames:?}");
+            assert!(frames.longest * frames.count as f64 >= 0.9 * summary.solving_seconds, "{solver}: {frames:?}");
+            assert!(frames.longest <= summary.solving_seconds, "{solver}: {frames:?}");
+            let of_a_frame = (0.01 / simulation.time_step() - 1e-6).ceil() as u64;
+            assert_eq!(frames.count, simulation.step_count() / of_a_frame, "{solver}: {frames:?}");
+            frames.count
+        });
+        assert!(one == other && one >= 10, "{solver}: {one} and {other}");
+    }
+    if gpu_or_reason().is_some() {
+        let gpu = Options { backend: BackendChoice::Gpu, precision: Precision::F32, threads: 1, ..Options::default() };
+        let mut simulation = cube("Explicit", &gpu);
+        simulation.advance_to(0.05).unwrap();
+        assert_eq!(simulation.summary("finished").unwrap().frames, None);
+    }
 }

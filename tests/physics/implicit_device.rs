@@ -88,7 +88,7 @@ fn gpus_repeat_steps_to_the_bit() {
     let runs = [(); 2].map(|()| {
         let (u, counts) = moved(&text, &gpu, 0.1);
         let bits: Vec<[u64; 3]> = u.iter().map(|u| u.to_array().map(f64::to_bits)).collect();
-        (bits, ImplicitSteps { longest_step: 0.0, step_percentile_99: 0.0, ..counts })
+        (bits, counts)
     });
     assert!(runs[0].1.newton_iterations > 10, "{:?}", runs[0].1);
     assert!(runs[0] == runs[1]);

@@ -39,6 +39,7 @@ mod implicit_agreement;
 mod implicit_budget;
 mod implicit_device;
 mod implicit_forms;
+mod implicit_guards;
 mod implicit_lens;
 mod implicit_memory;
 mod implicit_orders;

@@ -121,6 +121,10 @@ fn speeds(summary: &Summary, page: &mut Page) {
         let element = quantity(summary.nanoseconds_an_element_and_step * 1e-9, "s");
         page.row("", format!("{each} a step, {element} an element and step"));
     }
+    if let Some(frames) = &summary.frames {
+        let (of_most, longest) = (quantity(frames.percentile_99, "s"), quantity(frames.longest, "s"));
+        page.row("", format!("frames of 10 ms of life: {of_most} at most for 99 of 100, {longest} for the longest"));
+    }
     let (before, writing) = (quantity(summary.setup_seconds, "s"), quantity(summary.writing_seconds, "s"));
     page.row("beside it", format!("{before} of reading and building, {writing} of observing and writing"));
     match summary.ended.as_str() {
@@ -145,12 +149,8 @@ fn implicit(took: &ImplicitSteps, to_rest: bool, page: &mut Page) {
     }
     let (left, above) = (digits(took.largest_residual_left), counted(took.unsolved, one));
     page.row("", format!("largest share of a residual left: {left}; {above} above the tolerance"));
-    let (most, longest) = (took.most_passes, quantity(took.longest_step, "s"));
-    let (of_most, held) = (quantity(took.step_percentile_99, "s"), bytes(took.preconditioner_bytes));
-    page.row(
-        "",
-        format!("at most {most} passes and {longest} for one, {of_most} for 99 of 100; {held} of preconditioner"),
-    );
+    let (most, held) = (count(took.most_passes), bytes(took.preconditioner_bytes));
+    page.row("", format!("at most {most} passes for one; {held} of preconditioner"));
 }
 
 /// What is no system, but a part of the run.

@@ -2,7 +2,7 @@
 
 use super::axes::{Axes, Motion, acceleration_before};
 use super::place::Place;
-use super::vectors::resize;
+use super::to_go::ToGo;
 use crate::components::{DisplacementCompensation, ExternalForce, Grasps, InternalForce, Reals};
 use crate::systems::{HeldNode, held_in_step, note_held};
 use bevy_ecs::prelude::*;
@@ -13,7 +13,7 @@ pub(super) struct Grasped(Vec<(HeldNode, usize, [bool; 3])>);
 
 impl Grasped {
     /// Holds the free axes of nodes that closed tools hold, and says how far they have to go (m).
-    pub fn hold(world: &mut World, axes: &Axes, motion: &mut Motion, to_go: &mut Reals) -> Self {
+    pub fn hold(world: &mut World, axes: &Axes, motion: &mut Motion, to_go: &mut ToGo) -> Self {
         let mut all = Vec::new();
         // a step asks for no memory for what is not there
         if !axes.bodies.iter().any(|&body| world.get::<Grasps>(body).is_some()) {
@@ -27,11 +27,10 @@ impl Grasped {
                 let axis = first + i;
                 own[i] = motion.free[axis];
                 if own[i] {
-                    resize(to_go, axes.len());
                     motion.free[axis] = false;
                     let lost = world.get::<DisplacementCompensation>(node.body);
                     let lost = lost.map_or(0.0, |lost| lost.get(3 * node.row + i));
-                    to_go.set(axis, to - (motion.u.get(axis) - lost));
+                    to_go.push(axis, to - (motion.u.get(axis) - lost));
                 }
             }
             all.push((node, first, own));

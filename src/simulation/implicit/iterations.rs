@@ -9,7 +9,7 @@ use super::kept::Kept;
 use super::newton::{Found, Newton, Settings, Workspace};
 use super::place::Place;
 use super::preconditioner::{Operator, Preconditioner, of_name};
-use super::report::{Durations, ImplicitSteps};
+use super::report::ImplicitSteps;
 use super::step_control::{StepControl, error_and_reach};
 use super::sums::Sums;
 use super::trial::Trial;
@@ -17,7 +17,6 @@ use crate::backend::cpu::Cpu;
 use crate::components::Clock;
 use crate::scene::schema;
 use bevy_ecs::prelude::*;
-use web_time::Instant;
 
 /// The passes of a step, and how many dispatches its forces are on a GPU where that is asked about.
 pub(in crate::simulation) type OfForces<'a> = (&'a [ScheduledPass], Option<usize>);
@@ -31,10 +30,7 @@ pub(super) struct Iterations {
     pub kept: Kept,
     pub sums: Sums,
     pub report: ImplicitSteps,
-    durations: Durations,
-    /// When the step began that is sought, and the passes that it has taken so far, those that were taken back with
-    /// them.
-    began: Option<Instant>,
+    /// Passes of the step that is sought so far, those that were taken back with them.
     passes: u64,
     /// What solves on a device, once it has.
     pub on_device: Option<OnDevice>,
@@ -51,8 +47,6 @@ impl Iterations {
             kept: Kept::new(axes.precision()),
             sums: Sums::on(world.resource::<Cpu>()),
             report: ImplicitSteps::default(),
-            durations: Durations::default(),
-            began: None,
             passes: 0,
             on_device: None,
         }
@@ -106,11 +100,6 @@ impl Iterations {
         control.takes(h, error, reach, formula.order())
     }
 
-    /// Begins with a step, or once more with one that was taken back.
-    pub fn begin_step(&mut self) {
-        self.began.get_or_insert_with(Instant::now);
-    }
-
     /// Notes that a step is taken back; what was told before it stands of residuals.
     pub fn take_back(&mut self, told: &ImplicitSteps) {
         let ImplicitSteps { unsolved, largest_residual_left, .. } = *told;
@@ -122,19 +111,12 @@ impl Iterations {
     pub fn end_step(&mut self) {
         self.report.steps += 1;
         self.report.most_passes = self.report.most_passes.max(std::mem::take(&mut self.passes));
-        let seconds = self.began.take().map_or(0.0, |began| began.elapsed().as_secs_f64());
-        self.durations.count(seconds);
-        self.report.longest_step = self.report.longest_step.max(seconds);
     }
 
     /// What was taken so far.
     pub fn report(&self) -> ImplicitSteps {
         let held = self.preconditioner.holds().1;
-        ImplicitSteps {
-            preconditioner_bytes: held.iter().map(|(_, bytes)| bytes).sum(),
-            step_percentile_99: self.durations.of_most().min(self.report.longest_step),
-            ..self.report
-        }
+        ImplicitSteps { preconditioner_bytes: held.iter().map(|(_, bytes)| bytes).sum(), ..self.report }
     }
 
     /// What it does in words after `first`, and what it holds at the present state, for `explain`. The first step

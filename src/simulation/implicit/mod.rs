@@ -23,6 +23,7 @@ mod statics;
 mod step;
 mod step_control;
 mod sums;
+mod to_go;
 mod trial;
 mod unsupported;
 mod vectors;

@@ -18,8 +18,9 @@ use super::preconditioner::{Operator, Preconditioner};
 use super::report::ImplicitSteps;
 use super::springs::Springs;
 use super::sums::Sums;
+use super::to_go::ToGo;
 use super::trial::{Trial, Tried};
-use super::vectors::{clear, none, update};
+use super::vectors::{clear, update};
 use crate::components::{Precision, Reals};
 use crate::error::Error;
 
@@ -84,8 +85,8 @@ pub(super) struct Found {
 pub(super) struct Workspace {
     /// w − y (m): where axes are at the end, w, from where their velocity leads, y = u + h v.
     pub correction: Reals,
-    /// How far held axes still have to go (m); empty where none has.
-    pub to_go: Reals,
+    /// How far held axes still have to go (m).
+    pub to_go: ToGo,
     /// F − R at w (N).
     pub net: Reals,
     /// The residual g at w (N). A solve begins with the right-hand side in its place, and leaves what it leaves.
@@ -98,7 +99,7 @@ pub(super) struct Workspace {
 impl Workspace {
     /// Of all axes.
     pub fn of(axes: &Axes) -> Self {
-        let to_go = none(axes.precision());
+        let to_go = ToGo::nowhere(axes.precision());
         let [correction, net, residual, p, direction, image] = [(); 6].map(|()| axes.zeros());
         Self { correction, to_go, net, residual, p, vectors: Vectors { direction, image } }
     }
@@ -106,8 +107,8 @@ impl Workspace {
     /// Bytes of all vectors.
     pub fn bytes(&self) -> usize {
         let Self { correction, to_go, net, residual, p, vectors: Vectors { direction, image } } = self;
-        let all = [correction, to_go, net, residual, p, direction, image];
-        all.into_iter().map(|vector| vector.bytes().len()).sum()
+        let all = [correction, net, residual, p, direction, image];
+        to_go.bytes() + all.into_iter().map(|vector| vector.bytes().len()).sum::<usize>()
     }
 
     /// Begins at y.
@@ -171,7 +172,7 @@ impl Newton<'_, '_> {
                 floor = self.rounding()?;
             }
             let enough = enough.max(floor);
-            let moves = self.moves();
+            let moves = self.space.to_go.moves();
             // the linearised step takes its one solve wherever it begins
             let taken = self.settings.newton > 1 || iterations > 0 || size == 0.0;
             let solved = taken && size <= enough && !moves;
@@ -206,12 +207,6 @@ impl Newton<'_, '_> {
 
     fn what_is_beyond(&self) -> &'static str {
         if self.beyond { ": farther on forces are no numbers, or elements are turned inside out" } else { "" }
-    }
-
-    /// Whether held axes have not arrived yet.
-    fn moves(&self) -> bool {
-        let to_go = &self.space.to_go;
-        (0..to_go.len()).any(|axis| to_go.get(axis) != 0.0)
     }
 
     /// w.
@@ -300,12 +295,13 @@ impl Newton<'_, '_> {
     /// Puts b = −g − K_fc p_c in the place of g, with what held axes still have to go if they move.
     fn set_right(&mut self, moves: bool) -> Result<(), Error> {
         let Self { trial, settings, h, motion, space, .. } = self;
-        let Workspace { correction, net, to_go, residual, vectors: Vectors { image, .. }, .. } = &mut **space;
+        let Workspace { correction, net, to_go, residual, p, vectors: Vectors { image, .. } } = &mut **space;
         // it is 0 where axes are not free
         update(residual, |_, g| -g);
         if moves {
             let place = Place { formula: &settings.formula, h: *h, motion, correction, beyond: None };
-            difference(trial, &place, net, to_go, image)?;
+            to_go.put(p);
+            difference(trial, &place, net, p, image)?;
             update(residual, |axis, b| if motion.free[axis] { b - image.get(axis) } else { 0.0 });
         }
         Ok(())

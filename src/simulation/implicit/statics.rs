@@ -150,7 +150,6 @@ impl Statics {
         seek: impl FnOnce(&mut Self, &mut World) -> Result<T, Lost>,
         stays: impl FnOnce(&T) -> bool,
     ) -> Result<Result<T, Lost>, Error> {
-        self.iterations.begin_step();
         bring_state(world)?;
         self.iterations.kept.keep(world, &self.axes);
         world.insert_resource(TrialForces { trying: true, ..TrialForces::default() });

@@ -12,15 +12,14 @@ use super::place::Place;
 use super::report::ImplicitSteps;
 use super::springs::Springs;
 use super::step_control::StepControl;
+use super::to_go::ToGo;
 use super::trial::Trial;
-use super::vectors::{none, resize};
-use super::work::add_work;
+use super::work::{add_internal_work, add_work};
 use crate::components::*;
 use crate::error::{Criterion, Error};
 use crate::observation::Observer;
 use crate::scene::schema::{ImplicitScheme, Inversion, Scene, Solver};
 use bevy_ecs::prelude::*;
-use std::ops::Range;
 
 /// What is left of a residual that is warned of.
 const WARNED: f64 = 0.5;
@@ -99,7 +98,6 @@ impl Implicit {
     /// Takes the step that begins at the clock's, up to the loads at its end. Where that is not found, or its error is
     /// too large, all stands as it stood.
     pub fn step(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<Taken, Error> {
-        self.iterations.begin_step();
         let told = self.iterations.report;
         let clock = *world.resource::<Clock>();
         bring_state(world)?;
@@ -169,9 +167,8 @@ impl Implicit {
             keep_forces(&mut trial, h, iterations)?;
             let place = iterations.place(h);
             grasped.note(trial.world, &place, &iterations.space.net);
-            if *works {
-                add_work(trial.world, axes, &iterations.kept.forces, &place);
-            }
+            let count = if *works { add_work } else { add_internal_work };
+            count(trial.world, axes, &iterations.kept.forces, &place);
             place.arrive(axes, trial.world);
         }
         iterations.count(trial.count);
@@ -199,24 +196,13 @@ fn begin(trial: &mut Trial<'_>, motion: &Motion, net: &mut Reals, formula: &Form
     Ok(())
 }
 
-/// How far held axes go in the step (m), as `boundary` has written it; nothing where none does.
-pub(super) fn held_axes(world: &World, axes: &Axes, motion: &Motion, to_go: &mut Reals) {
-    let goes = |(body, range): (Entity, Range<usize>)| {
-        let Some(step) = world.get::<DisplacementIncrement>(body) else { return false };
-        let first = range.start;
-        range.into_iter().any(|axis| motion.is_held(axis) && step.get(axis - first) != 0.0)
-    };
-    if !axes.each().any(goes) {
-        *to_go = none(axes.precision());
-        return;
-    }
-    resize(to_go, axes.len());
+/// How far held axes go in the step (m), as `boundary` has written it.
+pub(super) fn held_axes(world: &World, axes: &Axes, motion: &Motion, to_go: &mut ToGo) {
+    to_go.clear();
     for (body, range) in axes.each() {
         let Some(step) = world.get::<DisplacementIncrement>(body) else { continue };
-        for i in 0..range.len() {
-            let axis = range.start + i;
-            to_go.set(axis, if motion.is_held(axis) { step.get(i) } else { 0.0 });
-        }
+        let goes = |&axis: &usize| motion.is_held(axis) && step.get(axis - range.start) != 0.0;
+        range.clone().filter(goes).for_each(|axis| to_go.push(axis, step.get(axis - range.start)));
     }
 }
 

@@ -6,6 +6,19 @@ use super::place::Place;
 use crate::components::*;
 use bevy_ecs::prelude::*;
 
+/// Adds up the work against internal forces alone, for the guard of energy.
+pub(super) fn add_internal_work(world: &mut World, axes: &Axes, before: &ForcesBefore, place: &Place<'_>) {
+    for (body, range) in axes.each() {
+        let Some(internal) = world.get::<InternalForce>(body) else { continue };
+        let of_axis =
+            |axis: usize| 0.5 * (before.internal.get(axis) + internal.get(axis - range.start)) * place.moved(axis);
+        let work = range.clone().map(of_axis).sum();
+        if let Some(mut sum) = world.get_mut::<InternalWork>(body) {
+            sum.add(work);
+        }
+    }
+}
+
 /// Adds up what a step did. Forces work with the mean of those at both ends: of linear bodies that is what they
 /// store. What is missing then to the change of kinetic energy of a free axis went into the formula: implicit Euler
 /// takes ½ M Δv² + ½ Δu·ΔF, less what a change of loads gives.

@@ -8,7 +8,7 @@
 use super::super::minimal_residual::{self as minres, Vectors};
 use super::super::place::Place;
 use super::super::step::held_axes;
-use super::super::vectors::{clear, combine, copy, update};
+use super::super::vectors::{copy, update};
 use super::{Lost, MOST_PRODUCTS, Newton, ROUNDING_FROM, Stop, difference, fill_with_signs};
 use crate::components::{Reals, Signals};
 use crate::error::Error;
@@ -244,10 +244,8 @@ impl Newton<'_, '_> {
         self.trial.boundary()?;
         let super::Workspace { correction, to_go, .. } = &mut *self.space;
         held_axes(self.trial.world, self.trial.axes, self.motion, to_go);
-        if !to_go.is_empty() {
-            combine(correction, to_go, |w, left| w + left);
-            clear(to_go);
-        }
+        to_go.add(1.0, correction);
+        to_go.clear();
         Ok(())
     }
 

@@ -2,7 +2,7 @@
 
 use super::super::conjugate_gradients::Vectors;
 use super::super::trial::Tried;
-use super::super::vectors::{combine, copy, update};
+use super::super::vectors::{combine, copy};
 use super::{DESCENT, Lost, Newton, Way, Workspace};
 use crate::components::Clock;
 
@@ -77,7 +77,7 @@ impl Newton<'_, '_> {
         self.residual();
         let begins = self.sums.dot(&self.space.p, &self.space.residual);
         let touches = self.trial.world.resource::<Clock>().springs.is_some();
-        let moves = self.moves();
+        let moves = self.space.to_go.moves();
         let ends = self.longest();
         let (mut share, mut bracket, mut halvings) = (ends, Bracket::from(begins, ends), 0);
         for look in 0..=MOST_LOOKS {
@@ -89,9 +89,7 @@ impl Newton<'_, '_> {
             copy(correction, from);
             combine(correction, p, |from, p| from + share * p);
             // where held axes go p is 0
-            if !to_go.is_empty() {
-                combine(correction, to_go, |from, left| from + share * left);
-            }
+            to_go.add(share, correction);
             let tried = self.forces_at_w()?;
             let mut work = f64::NAN;
             self.beyond |= !tried.sound;
@@ -104,7 +102,7 @@ impl Newton<'_, '_> {
                 let arrives = touches && now <= if moves { DESCENT } else { FALLS } * *size;
                 let is_enough = now <= enough || self.left() == 0 && now < *size;
                 if now.is_finite() && (descends || arrives || self.settings.newton == 1 || is_enough) {
-                    update(&mut self.space.to_go, |_, left| left * (1.0 - share));
+                    self.space.to_go.go(share);
                     *size = now;
                     return Ok(tried);
                 }
@@ -130,8 +128,9 @@ impl Newton<'_, '_> {
     fn longest(&self) -> f64 {
         let Some(farthest) = self.farthest else { return 1.0 };
         let Workspace { p, to_go, .. } = &*self.space;
-        let left = |axis: usize| if to_go.is_empty() { 0.0 } else { to_go.get(axis) };
-        let most = (0..p.len()).map(|axis| (p.get(axis) + left(axis)).abs()).fold(0.0, f64::max);
+        // where held axes go p is 0
+        let ways = (0..p.len()).map(|axis| p.get(axis)).chain(to_go.iter().map(|(_, left)| left));
+        let most = ways.map(f64::abs).fold(0.0, f64::max);
         if most > farthest { farthest / most } else { 1.0 }
     }
 

@@ -1,8 +1,8 @@
 use super::*;
 
-/// Of 200 steps two are long: 99 of 100 are no longer than the others.
+/// Of 200 frames two are long: 99 of 100 are no longer than the others.
 #[test]
-fn a_hundredth_of_the_steps_may_take_longer() {
+fn a_hundredth_of_the_frames_may_take_longer() {
     let mut durations = Durations::default();
     (0..198).for_each(|_| durations.count(2e-3));
     (0..2).for_each(|_| durations.count(0.5));
