@@ -5,7 +5,7 @@ use super::node_shares::{ShareOf, WantedShares, share_of, wanted_shares};
 use super::node_slopes::NodeSlopes;
 use super::node_views::{Before, ForceSlopes, MiddleOfStep, NodesAtRest};
 use super::rows::{RowSet, Rows, row_set};
-use super::system::HostSystem;
+use super::runs_on::HostSystem;
 use crate::backend::cpu::{Cpu, Declared, NodeColumns, NodeShare};
 use crate::components::*;
 use crate::math::SimdScalar;

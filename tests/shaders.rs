@@ -355,6 +355,7 @@ fn every_shader_is_named_after_a_system_an_element_or_a_material_or_listed() {
             "registry",
             "repeat",
             "rows",
+            "runs_on",
             "host_forces",
             "node_shares",
             "node_slices",

@@ -134,6 +134,23 @@ mod slopes {
 }
 
 #[rustfmt::skip]
+mod taking_part {
+    use sinew::components::DampingCoefficient;
+    use sinew::prelude::*;
+
+    fn pull() {}
+
+    fn registered() -> System {
+        let system = System::custom("hanger", Phase::Loads, "holds what is high", pull)
+            .when("damping of a material", |world| {
+                let damped = world.query::<&DampingCoefficient>().iter(world).count();
+                (damped > 0).then(|| "a body is damped".into())
+            });
+        system
+    }
+}
+
+#[rustfmt::skip]
 mod chosen_nodes {
     use sinew::prelude::*;
 
