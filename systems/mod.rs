@@ -57,6 +57,7 @@ mod registry;
 mod repeat;
 mod rows;
 mod runs_on;
+mod stage;
 mod suction;
 mod suction_mouth;
 mod surface_contact;
@@ -91,6 +92,7 @@ pub use repeat::Repeat;
 pub use rows::{RowSet, Rows};
 #[doc(hidden)]
 pub use runs_on::{DescribeKernels, HostSystem, OnDevice, OnHost};
+pub use stage::Stage;
 #[doc(hidden)]
 pub use surface_contact::{Meeting, SurfaceContacts, SurfaceMemory};
 pub(crate) use surface_contact::{find_surface_springs, find_surfaces, seek_surfaces};

@@ -9,7 +9,7 @@ use crate::error::Error;
 use bevy_ecs::prelude::*;
 
 /// A system on the host: what the CPU backend runs, and what custom systems are on both backends.
-pub type HostSystem = Box<dyn bevy_ecs::system::System<In = (), Out = Result<(), Error>>>;
+pub type HostSystem = Box<dyn System<In = (), Out = Result<(), Error>>>;
 
 /// What a system is on the host.
 pub enum OnHost {

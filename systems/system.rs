@@ -1,10 +1,11 @@
 //! What a system is.
 
 use super::host_forces::HostSlopes;
-use super::node_stages::{check_parameters, derived_stages};
+use super::node_stages::Twin;
 use super::node_system::{NodeRows, NodeSystem};
 use super::repeat::Repeat;
 use super::runs_on::{DescribeKernels, HostSystem, OnDevice, OnHost};
+use super::stage::Stage;
 use crate::backend::Buffers;
 use crate::backend::kernel::Fragment;
 use crate::backend::kernel::Kernel;
@@ -99,7 +100,7 @@ pub type Because = Arc<dyn Fn(&mut World) -> Option<String> + Send + Sync>;
 type ReadParameters = fn(ron::Value, &mut World) -> Result<(), String>;
 
 /// Says why what calls for a system in a world does not fit its twin on a GPU, where it does not.
-type CheckParameters = fn(&mut World) -> Result<(), String>;
+type CheckParameters = Arc<dyn Fn(&mut World) -> Result<(), String> + Send + Sync>;
 
 /// What in a scene calls for a system that takes parameters.
 const GIVEN: &str = "its `parameters`";
@@ -239,13 +240,27 @@ impl System {
     /// uniform `parameters`; `step.time` and `step.time_step` (s). In place of columns of forces there are functions:
     /// `internal_force_of(node)`, `external_force_of(node)` and `add_load(node, force)`. Where it keeps
     /// [numbers](NodeSystem::OWN_NUMBERS), there are `own(node, i)` and `set_own(node, i, value)`; where it
-    /// [chooses](NodeSystem::choose) nodes, it is called for these.
-    pub fn with_shader<S: NodeSystem + serde::Serialize>(mut self, path: &'static str, text: &'static str) -> Self {
+    /// [chooses](NodeSystem::choose) nodes, it is called for these. One that goes through a [list](NodeSystem::rows) of
+    /// its own, which must ascend then, is called for that, as `fn NAME(i: u32, node: u32)` with the place in it; what
+    /// else it reads, its [stages](NodeSystem::stages) say.
+    pub fn with_shader<S: NodeSystem + serde::Serialize>(self, path: &'static str, text: &'static str) -> Self {
         let name = self.name.clone();
-        self.check = Some(check_parameters::<S>);
-        self.device = OnDevice::Stages(Arc::new(move |world, buffers| {
-            derived_stages::<S>(&name, &Fragment::new(path, text), world, buffers)
-        }));
+        self.with_twin::<S>(name, Fragment::new(path, text), |system, stage| stage.uniform("parameters", system))
+    }
+
+    /// The same for components that are no structs of numbers: what there is of such, `component` adds, and kernels
+    /// call the function `call`.
+    pub(crate) fn with_twin<S: NodeSystem>(
+        mut self,
+        call: impl Into<String>,
+        shader: Fragment,
+        component: fn(&S, Stage) -> Stage,
+    ) -> Self {
+        let of = self.host.nodes().and_then(|rows| rows.of);
+        let twin = Arc::new(Twin { name: self.name.clone(), call: call.into(), shader, of, component });
+        let checked = twin.clone();
+        self.check = Some(Arc::new(move |world| checked.check(world)));
+        self.device = OnDevice::Stages(Arc::new(move |world, buffers| twin.stages(world, buffers)));
         self
     }
 
@@ -336,7 +351,9 @@ impl System {
         self
     }
 
-    /// With what it does to nodes, in kernels that neighbours may share.
+    /// The same where a column stands in the place of another (`InertialMass` in that of `Mass`), which no author of a
+    /// text could know, or where one system is two kernels on devices that bind few buffers: `integrate`, and what
+    /// foresees where it moves nodes.
     pub(crate) fn on_nodes(
         mut self,
         stages: impl Fn(&mut World, &mut dyn Buffers) -> Vec<NodeStage> + Send + Sync + 'static,

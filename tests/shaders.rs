@@ -209,7 +209,9 @@ fn has_the_structs_of_rust(kernel: &Kernel, composer: &mut Composer) {
     for binding in composed.bindings.iter().filter(|b| b.kind == BindingKind::Uniform && b.name != "step") {
         let layout = kernel.layouts.iter().find(|(name, _)| *name == binding.name).map(|(_, layout)| layout);
         let Some(layout) = layout else {
-            assert_eq!(binding.name, "limits", "{}: Rust says nothing of `{}`", kernel.label, binding.name);
+            // `parameters` are declared by what Rust has
+            let known = ["limits", "parameters"].contains(&binding.name.as_str());
+            assert!(known, "{}: Rust says nothing of `{}`", kernel.label, binding.name);
             continue;
         };
         assert!(binding.type_name.contains(layout.name), "{} is not {}", binding.type_name, layout.name);
@@ -356,6 +358,7 @@ fn every_shader_is_named_after_a_system_an_element_or_a_material_or_listed() {
             "repeat",
             "rows",
             "runs_on",
+            "stage",
             "host_forces",
             "node_shares",
             "node_slices",

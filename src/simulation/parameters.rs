@@ -82,7 +82,7 @@ pub(super) fn hand_out(scene: &Scene, known: &Known<'_>, world: &mut World, diag
                 Some(_) | None => Ok(()),
             },
         };
-        if let Err(reason) = result.and_then(|()| system.check.map_or(Ok(()), |check| check(world))) {
+        if let Err(reason) = result.and_then(|()| system.check.as_ref().map_or(Ok(()), |check| check(world))) {
             complain(format!("the parameters of `{name}` do not fit: {reason}"));
         }
     }

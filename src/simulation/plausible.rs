@@ -20,12 +20,7 @@ const DENSITIES: RangeInclusive<f64> = 10.0..=30_000.0;
 const MODULI: RangeInclusive<f64> = 5.0..=1e12;
 
 /// Warns of what is far from tissue, and of bodies under load that nothing holds.
-pub(super) fn check(
-    assembly: &Assembly<'_>,
-    may_hold: bool,
-    world: &mut World,
-    diagnostics: &mut Diagnostics,
-) {
+pub(super) fn check(assembly: &Assembly<'_>, may_hold: bool, world: &mut World, diagnostics: &mut Diagnostics) {
     let scene = &assembly.scene.scene;
     sizes(assembly, diagnostics);
     materials(scene, world, diagnostics);

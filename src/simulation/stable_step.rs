@@ -163,8 +163,7 @@ pub(super) fn choose(
             .note("`bound: Auto` stays with the stiffest element, which is safe");
     }
     let names = scene.scene.schedule.as_deref();
-    let running: Vec<_> =
-        known.systems().filter(|system| !system.custom || takes_part(system, names, world)).collect();
+    let running: Vec<_> = known.systems().filter(|system| !system.custom || takes_part(system, names, world)).collect();
     let loads = LoadRates::of(running.into_iter(), scene.scene.duration, world);
     // what cannot be found is an error of the scene, which may have more
     let loads = loads.inspect_err(|error| _ = diagnostics.error(error.to_string())).unwrap_or_default();

@@ -65,6 +65,36 @@ mod of_nodes {
 }
 
 #[rustfmt::skip]
+mod beside_columns {
+    use sinew::prelude::*;
+    use sinew::systems::{Rows, Stage};
+
+    #[derive(Component)]
+    struct Anchors { rows: Vec<u32>, goals: Vec<f32> }
+
+    impl NodeSystem for Anchors {
+        type Columns = (&'static Displacement, &'static mut ExternalForce);
+        type Prepared = ();
+
+        fn rows(&self) -> Rows<'_> {
+            Rows::List(&self.rows)
+        }
+
+        fn stages(&self, _: Entity, _: &World) -> Vec<Stage> {
+            vec![Stage::of(self.rows()).reals("goals", &self.goals)]
+        }
+
+        fn prepare(&self, _: &Before<'_>) {}
+
+        fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+            ForceSlopes::NONE
+        }
+
+        fn act<T: SimdScalar>(&self, (): &(), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {}
+    }
+}
+
+#[rustfmt::skip]
 mod on_the_host {
     use sinew::prelude::*;
 

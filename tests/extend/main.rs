@@ -2,6 +2,7 @@
 //! file and its WGSL file, or by one of them. They run on both backends.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod anchors;
 mod bond;
 mod gent;
 mod hanger;
