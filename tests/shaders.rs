@@ -153,13 +153,8 @@ fn every_combination_of_effects_composes_with_no_more_buffers_than_there_may_be(
             let patches = kernel.all_fragments().iter().any(|fragment| fragment.path == "shaders/patches.wgsl");
             let width = match (kernel.entry, patches) {
                 ("many_steps", _) => kernel.threads,
-                (_, patches) => {
-                    if patches {
-                        128
-                    } else {
-                        64
-                    }
-                }
+                (_, true) => 128,
+                (_, false) => 64,
             };
             assert_eq!(entry.workgroup_size, [width, 1, 1], "{}", kernel.label);
             assert!(entry.workgroup_memory as usize <= WEBGPU_WORKGROUP_MEMORY, "{}", kernel.label);
