@@ -41,8 +41,11 @@ fn registry() -> Registry {
         .with(custom("both", Phase::Loads).when("a constraint", held).with_parameters::<Given>())
 }
 
+/// Systems, and what is told of each.
+type Told = Vec<(String, String)>;
+
 /// What takes part and why, in the order of a step, and what does not.
-fn told(more: &str) -> (Vec<(String, String)>, Vec<(String, String)>, Simulation) {
+fn told(more: &str) -> (Told, Told, Simulation) {
     let options = Options { backend: BackendChoice::Cpu, ..Options::default() };
     let mut simulation = Simulation::with_systems(&scene(more), &options, &registry()).unwrap();
     let told = simulation.explain(&registry()).unwrap();
