@@ -1,7 +1,5 @@
-// Areas of deformed faces, for loads that follow them.
-@group(0) @binding(3) var<storage, read> faces: array<u32>; // six a face: nodes, what is behind it, weight
-@group(0) @binding(4) var<storage, read> face_points: array<f32>; // four points a face at rest (m)
-@group(0) @binding(5) var<storage, read> displacement: array<f32>;
+// Areas of deformed faces, for loads that follow them. faces: six numbers a face, its nodes, what is behind it, weight;
+// face_points: four points a face at rest (m).
 
 fn face_point(face: u32, corner: u32) -> vec3<f32> {
     let x = 12u * face + 3u * corner;

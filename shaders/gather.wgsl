@@ -1,9 +1,6 @@
 // Sums element forces at the nodes in a fixed order; twin of systems/gather.rs. set_internal_force and clear_loads are
 // in internal_force.wgsl and external_force.wgsl, or, where integrate shares the kernel, in their patch-local twins.
-// STRIDE is generated. where each node's begin, and the end; behind these, where in element_force they are
-@group(0) @binding(0) var<storage, read> corners: array<u32>;
-@group(0) @binding(1) var<storage, read> element_force: array<f32>;
-
+// STRIDE is generated. corners: where each node's begin, and the end; behind these, where in element_force they are.
 fn gather(node: u32) {
     var sum = vec3<f32>(0.0);
     for (var i = corners[node]; i < corners[node + 1u]; i++) {

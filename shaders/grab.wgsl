@@ -14,9 +14,6 @@ struct HeldRow {
     unused_3: u32,
 }
 @group(0) @binding(0) var<uniform> grabs: array<HeldRow, MOST_HELD>;
-@group(0) @binding(1) var<storage, read> mass: array<f32>;
-@group(0) @binding(2) var<storage, read> displacement: array<f32>;
-@group(0) @binding(3) var<storage, read> displacement_increment: array<f32>;
 
 fn grab(node: u32) {
     for (var i = 0u; i < MOST_HELD && grabs[i].row != 0xffffffffu; i++) {

@@ -1,6 +1,4 @@
 // What a load is multiplied with at each of its rows along each axis.
-@group(0) @binding(0) var<storage, read> factors: array<f32>;
-
 fn factor_of(i: u32) -> vec3<f32> {
     return vec3<f32>(factors[3u * i], factors[3u * i + 1u], factors[3u * i + 2u]);
 }

@@ -1,13 +1,5 @@
 // A load that a scene has in WGSL alone; twin of systems/own_load.rs. own_load is generated, which calls own_load_on.
-struct OwnLoadUniform {
-    signal: u32, // slot of the curve
-    velocity_factor: u32, // 1; 0 in a static analysis, whose steps are no motion
-}
-@group(0) @binding(0) var<uniform> load: OwnLoadUniform;
-@group(0) @binding(1) var<storage, read> mass: array<f32>;
-@group(0) @binding(2) var<storage, read> displacement: array<f32>;
-@group(0) @binding(3) var<storage, read> displacement_increment: array<f32>;
-@group(0) @binding(4) var<storage, read> rest_position: array<f32>;
+// load: slot of the curve (signal), and 1, or 0 in a static analysis, whose steps are no motion (velocity_factor).
 
 // The scene's function: linked.
 fn force_on(state: Node) -> vec3<f32> {
@@ -22,7 +14,7 @@ fn own_load_on(node: u32) {
         state.rest_position = vec3<f32>(rest_position[at], rest_position[at + 1u], rest_position[at + 2u]);
         state.displacement = vec3<f32>(displacement[at], displacement[at + 1u], displacement[at + 2u]);
         let last = vec3<f32>(displacement_increment[at], displacement_increment[at + 1u], displacement_increment[at + 2u]);
-        state.velocity = last * (step.rate * f32(load.velocity_factor));
+        state.velocity = last * (step.rate * load.velocity_factor);
         state.mass = mass[node];
         state.curve = step.signals[load.signal].x;
         state.time = step.time;

@@ -1,12 +1,6 @@
 // A pressure that follows the surface; twin of systems/pressure.rs. bears is in alive.wgsl, or generated where no
 // element ever goes; face_area_at is in face_area.wgsl.
-struct PressureLoad {
-    signal: u32, // slot of the pressure (Pa)
-}
-@group(0) @binding(0) var<uniform> load: PressureLoad;
-@group(0) @binding(1) var<storage, read> starts: array<u32>;
-@group(0) @binding(2) var<storage, read> corners: array<u32>; // face times four plus corner
-
+// signal: slot of the pressure (Pa); corners: face times four plus corner.
 fn pressure(i: u32, node: u32) {
     var area = vec3<f32>(0.0);
     for (var at = starts[i]; at < starts[i + 1u]; at++) {
@@ -15,5 +9,5 @@ fn pressure(i: u32, node: u32) {
             area += bitcast<f32>(faces[6u * face + 5u]) * face_area_at(face, corners[at] % 4u);
         }
     }
-    add_load(node, -step.signals[load.signal].x * area);
+    add_load(node, -step.signals[parameters.signal].x * area);
 }

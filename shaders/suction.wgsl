@@ -1,16 +1,8 @@
 // Faces in the mouth of a tool are sucked into it; twin of systems/suction.rs. suction_mouth.wgsl marks them;
 // face_area_at is in face_area.wgsl.
-struct SuctionLoad {
-    faces: u32, // of the body
-    first: u32, // where the tool's marks begin
-    pressure: u32, // and its numbers in suction_pressure
-    lists: u32, // where corners begin in lists
-}
-@group(0) @binding(0) var<uniform> load: SuctionLoad;
-@group(0) @binding(1) var<storage, read> lists: array<u32>; // where each node's corners begin; face times four plus corner
-@group(0) @binding(2) var<storage, read> suction_marks: array<u32>; // bits of shares of faces; 1 at their nodes
-@group(0) @binding(3) var<storage, read> suction_pressure: array<f32>;
-
+// load: faces of the body, where the tool's marks begin (first) and its numbers in suction_pressure (pressure), where
+// corners begin in lists; lists: where each node's corners begin, then face times four plus corner; suction_marks: bits
+// of shares of faces, and 1 at their nodes.
 fn suction(i: u32, node: u32) {
     if suction_marks[load.first + load.faces + i] == 0u {
         return;

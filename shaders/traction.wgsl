@@ -1,13 +1,7 @@
 // Dead loads on the surface; twin of systems/traction.rs. bears is in alive.wgsl, or generated where no element ever
 // goes; factor_of is in load_factor.wgsl, or generated where all nodes get the same.
-struct TractionLoad {
-    signal: u32, // slot of the force per area (Pa)
-}
-@group(0) @binding(0) var<uniform> load: TractionLoad;
-@group(0) @binding(1) var<storage, read> starts: array<u32>;
-@group(0) @binding(2) var<storage, read> areas: array<f32>; // that fall to the node from each of its faces (m²)
-@group(0) @binding(3) var<storage, read> behind: array<u32>; // row of the element behind each of them
-
+// signal: slot of the force per area (Pa); areas: that fall to the node from each of its faces (m²); behind: row of the
+// element behind each of them.
 fn traction(i: u32, node: u32) {
     var area = 0.0;
     for (var at = starts[i]; at < starts[i + 1u]; at++) {
@@ -15,5 +9,5 @@ fn traction(i: u32, node: u32) {
             area += areas[at];
         }
     }
-    add_load(node, factor_of(i) * step.signals[load.signal].xyz * area);
+    add_load(node, factor_of(i) * step.signals[parameters.signal].xyz * area);
 }

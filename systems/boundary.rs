@@ -4,11 +4,9 @@ use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
 use super::rows::Rows;
+use super::stage::Stage;
 use super::system::{Phase, System};
-use crate::backend::Buffers;
 use crate::backend::cpu::{Asked, Cpu, NodeColumns};
-use crate::backend::kernel::{Fragment, Uniform, uniform};
-use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
 use crate::math::SimdScalar;
 use crate::shader;
@@ -32,7 +30,7 @@ pub fn system() -> System {
             }
         },
     )
-    .on_nodes(stages)
+    .with_shader::<Prescribed>("shaders/boundary.wgsl", include_str!("../shaders/boundary.wgsl"))
 }
 
 impl NodeSystem for Prescribed {
@@ -47,6 +45,26 @@ impl NodeSystem for Prescribed {
 
     fn rows(&self) -> Rows<'_> {
         Rows::List(&self.rows)
+    }
+
+    fn stages(&self, body: Entity, world: &World) -> Vec<Stage> {
+        let arms: Vec<f32> = self.arms.iter().flat_map(|arm| arm.as_vec3().to_array()).collect();
+        let stage = Stage::of(self.rows()).reals("arms", &arms);
+        let stage = match world.get::<DisplacementCompensation>(body) {
+            Some(_) => stage.fragment(shader!("compensation")),
+            None => stage.text(
+                "generated: sums that are not compensated",
+                "fn compensation_of(node: u32, axis: u32) -> f32 {\n    return 0.0;\n}\n",
+            ),
+        };
+        if world.get::<PreviousPrescribedIncrement>(body).is_none() {
+            return vec![stage.text("generated: previous steps are not kept", "fn keep_previous_step(at: u32) {}\n")];
+        }
+        let place = place_in_buffer::<PreviousPrescribedIncrement>(body, world);
+        let place = format!("const PREVIOUS_PRESCRIBED_AT: u32 = {place}u;\n");
+        let stage = stage.fragment(shader!("previous_prescribed_increment"));
+        let stage = stage.text("generated: where previous steps lie", place);
+        vec![stage.column(FirstNonFinite::BUFFER, body, PreviousPrescribedIncrement::NAME)]
     }
 
     fn prepare(&self, before: &Before<'_>) -> [[f64; 4]; 3] {
@@ -78,52 +96,4 @@ impl NodeSystem for Prescribed {
             }
         }
     }
-}
-
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-struct Motion {
-    axes: u32,
-    signal: u32,
-}
-uniform!(Motion { axes, signal });
-
-/// One stage for each prescribed set.
-fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
-    let sets: Vec<(Prescribed, Entity)> =
-        world.query::<(&Prescribed, &OfBody)>().iter(world).map(|(set, body)| (set.clone(), body.0)).collect();
-    let mut stages = Vec::new();
-    for (set, body) in sets {
-        let motion = Motion { axes: set.axes, signal: set.signal as u32 };
-        let arms: Vec<[f32; 3]> = set.arms.iter().map(|arm| arm.as_vec3().to_array()).collect();
-        let nodes = rows_of(body, world);
-        let mut stage = NodeStage::new("boundary", "boundary", body, nodes, shader!("boundary"))
-            .bind_uniform::<Motion>("motion", buffers.uniform("boundary".into(), &motion.bytes()))
-            .bind("arms", buffers.constants("arms of boundary".into(), bytemuck::cast_slice(&arms)))
-            .column(Displacement::NAME, buffers.column(body, Displacement::NAME))
-            .column(DisplacementIncrement::NAME, buffers.column(body, DisplacementIncrement::NAME))
-            .of_rows(set.rows);
-        stage = if world.get::<DisplacementCompensation>(body).is_some() {
-            let compensation = buffers.column(body, DisplacementCompensation::NAME);
-            stage.own(shader!("compensation")).column(DisplacementCompensation::NAME, compensation)
-        } else {
-            stage.own(Fragment::new(
-                "generated: sums that are not compensated",
-                "fn compensation_of(node: u32, axis: u32) -> f32 {\n    return 0.0;\n}\n",
-            ))
-        };
-        stage = if world.get::<PreviousPrescribedIncrement>(body).is_some() {
-            let diagnostics = buffers.column(body, PreviousPrescribedIncrement::NAME);
-            let place = place_in_buffer::<PreviousPrescribedIncrement>(body, world);
-            let place = Fragment::new(
-                "generated: where previous steps lie",
-                format!("const PREVIOUS_PRESCRIBED_AT: u32 = {place}u;\n"),
-            );
-            stage.own(shader!("previous_prescribed_increment")).own(place).column(FirstNonFinite::BUFFER, diagnostics)
-        } else {
-            stage.own(Fragment::new("generated: previous steps are not kept", "fn keep_previous_step(at: u32) {}\n"))
-        };
-        stages.push(stage.with_step(world));
-    }
-    stages
 }

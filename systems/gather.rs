@@ -2,11 +2,9 @@
 
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
+use super::stage::Stage;
 use super::system::{Phase, System};
-use crate::backend::Buffers;
 use crate::backend::cpu::{Asked, Cpu, NodeColumns, ROWS_A_TASK};
-use crate::backend::kernel::Fragment;
-use crate::backend::node_stage::NodeStage;
 use crate::components::*;
 use crate::math::{LANES, Scalar, SimdScalar};
 use crate::shader;
@@ -18,13 +16,18 @@ pub fn system() -> System {
     System::built_in_nodes::<Corners>("gather", Phase::Gather, "sums element forces at the nodes", "bodies", |world| {
         super::registry::count::<Corners>(world, "body with elements", "bodies with elements")
     })
-    .on_nodes(stages)
+    .with_twin::<Corners>("gather", shader!("gather"), |_, stage| stage)
 }
 
 impl NodeSystem for Corners {
     type Columns = (&'static ElementForce, &'static mut InternalForce, Option<&'static mut ExternalForce>);
     type Prepared = ();
     const SUMS_FORCES: bool = true;
+
+    fn stages(&self, _: Entity, _: &World) -> Vec<Stage> {
+        let stage = Stage::default().integers("corners", &in_one(self));
+        vec![stage.text("generated: stride", format!("const STRIDE: u32 = {}u;\n", self.stride))]
+    }
 
     fn prepare(&self, _: &Before<'_>) {}
 
@@ -83,30 +86,4 @@ fn sum_at_stride<T: Scalar, const STRIDE: usize>(
 fn in_one(corners: &Corners) -> Vec<u32> {
     let first = corners.starts.len() as u32;
     corners.starts.iter().map(|start| first + start).chain(corners.corners.iter().copied()).collect()
-}
-
-/// One stage for each body.
-fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
-    let bodies: Vec<(Entity, Corners, bool)> = world
-        .query::<(Entity, &Corners, Option<&ExternalForce>)>()
-        .iter(world)
-        .map(|(body, corners, external)| (body, corners.clone(), external.is_some()))
-        .collect();
-    let mut stages = Vec::new();
-    for (body, corners, loaded) in bodies {
-        let nodes = corners.starts.len().saturating_sub(1) as u32;
-        let stage = NodeStage::new("gather", "gather", body, nodes, shader!("gather"))
-            .own(Fragment::new("generated: stride", format!("const STRIDE: u32 = {}u;\n", corners.stride)))
-            .bind("corners", buffers.constants("corners".into(), bytemuck::cast_slice(&in_one(&corners))))
-            .column(ElementForce::NAME, buffers.column(body, ElementForce::NAME))
-            .column(InternalForce::NAME, buffers.column(body, InternalForce::NAME))
-            .with_step(world)
-            .that_sums_forces()
-            .loaded(loaded);
-        stages.push(match loaded {
-            true => stage.column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME)),
-            false => stage,
-        });
-    }
-    stages
 }

@@ -3,11 +3,10 @@
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, MiddleOfStep, NodesAtRest};
 use super::rows::Rows;
+use super::stage::Stage;
 use super::system::{Phase, System};
-use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
-use crate::backend::kernel::{Fragment, Uniform, uniform};
-use crate::backend::node_stage::{NodeStage, rows_of};
+use crate::backend::kernel::{Uniform, uniform};
 use crate::components::*;
 use crate::math::SimdScalar;
 use crate::shader;
@@ -23,7 +22,7 @@ pub fn system() -> System {
         "`grabs` in the program's options",
         |world| super::registry::count::<Grabs>(world, "body that can be grabbed", "bodies that can be grabbed"),
     )
-    .on_nodes(stages)
+    .with_twin::<Grabs>("grab", shader!("grab"), |_, stage| stage)
 }
 
 impl NodeSystem for Grabs {
@@ -33,6 +32,13 @@ impl NodeSystem for Grabs {
 
     fn rows(&self) -> Rows<'_> {
         Rows::Changing
+    }
+
+    fn stages(&self, body: Entity, world: &World) -> Vec<Stage> {
+        let label = world.get::<Label>(body).map_or("", |label| label.0.as_str());
+        let most = format!("const MOST_HELD: u32 = {}u;\n", Grabs::MOST_HELD);
+        let stage = Stage::default().text("generated: nodes that can be held", most);
+        vec![stage.rewritten::<HeldRow>("grabs", uniform_of(label), bytes_of(self))]
     }
 
     fn prepare(&self, before: &Before<'_>) -> f64 {
@@ -139,26 +145,4 @@ pub(crate) fn bytes_of(grabs: &Grabs) -> Vec<u8> {
         .bytes()
     };
     (0..Grabs::MOST_HELD).flat_map(place).collect()
-}
-
-/// One stage for each body that can be grabbed.
-fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
-    let all: Vec<(Grabs, Entity)> =
-        world.query::<(&Grabs, &OfBody)>().iter(world).map(|(grabs, body)| (grabs.clone(), body.0)).collect();
-    let mut stages = Vec::new();
-    for (grabs, body) in all {
-        let label = world.get::<Label>(body).map(|label| label.0.clone()).unwrap_or_default();
-        let most = Fragment::new(
-            "generated: nodes that can be held",
-            format!("const MOST_HELD: u32 = {}u;\n", Grabs::MOST_HELD),
-        );
-        let mut stage = NodeStage::new("grab", "grab", body, rows_of(body, world), shader!("grab"))
-            .own(most)
-            .bind_uniform::<HeldRow>("grabs", buffers.uniform(uniform_of(&label), &bytes_of(&grabs)));
-        for column in [Mass::NAME, Displacement::NAME, DisplacementIncrement::NAME, ExternalForce::NAME] {
-            stage = stage.column(column, buffers.column(body, column));
-        }
-        stages.push(stage.with_step(world).loaded(true));
-    }
-    stages
 }

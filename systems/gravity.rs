@@ -3,22 +3,21 @@
 use super::nodal_force::with_factors;
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
+use super::stage::Stage;
 use super::system::{Phase, System};
-use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
-use crate::backend::kernel::{Uniform, uniform};
-use crate::backend::node_stage::NodeStage;
 use crate::components::*;
 use crate::math::{LANES, SimdScalar};
-use crate::shader;
 use bevy_ecs::prelude::*;
 use pulp::{Simd, WithSimd};
+use serde::Serialize;
 use std::sync::Arc;
 
 /// Gravity on the body: the acceleration (m/s²) is a signal.
-#[derive(Component, Clone, Debug)]
+#[derive(Component, Clone, Debug, Serialize)]
 pub struct Gravity {
     /// What it is multiplied with at each row along each axis; empty: 1 at all.
+    #[serde(skip)]
     factors: Arc<Vec<[f64; 3]>>,
     signal: usize,
 }
@@ -33,12 +32,16 @@ pub fn system() -> System {
         |world| super::registry::count::<Gravity>(world, "gravity load", "gravity loads"),
     )
     .for_load(|on, signal| Some(Gravity { factors: on.all()?.clone(), signal }))
-    .on_nodes(stages)
+    .with_shader::<Gravity>("shaders/gravity.wgsl", include_str!("../shaders/gravity.wgsl"))
 }
 
 impl NodeSystem for Gravity {
     type Columns = (&'static Mass, &'static mut ExternalForce);
     type Prepared = [f64; 4];
+
+    fn stages(&self, _: Entity, _: &World) -> Vec<Stage> {
+        vec![with_factors(Stage::default(), &self.factors)]
+    }
 
     fn prepare(&self, before: &Before<'_>) -> [f64; 4] {
         before.signals.values()[self.signal]
@@ -87,28 +90,4 @@ impl<T: SimdScalar> WithSimd for Pull<'_, T> {
             }
         }
     }
-}
-
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-struct GravityLoad {
-    signal: u32,
-}
-uniform!(GravityLoad { signal });
-
-/// One stage for each load.
-fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
-    let loads: Vec<(Gravity, Entity)> =
-        world.query::<(&Gravity, &OfBody)>().iter(world).map(|(load, body)| (load.clone(), body.0)).collect();
-    let mut stages = Vec::new();
-    for (Gravity { factors, signal }, body) in loads {
-        let count = world.get::<Mass>(body).map_or(0, |mass| mass.len()) as u32;
-        let load = GravityLoad { signal: signal as u32 };
-        let stage = NodeStage::new("gravity", "gravity", body, count, shader!("gravity"))
-            .bind_uniform::<GravityLoad>("load", buffers.uniform("gravity".into(), &load.bytes()))
-            .column(Mass::NAME, buffers.column(body, Mass::NAME))
-            .column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME));
-        stages.push(with_factors(stage, &factors, buffers).with_step(world).loaded(true));
-    }
-    stages
 }

@@ -56,6 +56,8 @@ mod pressure;
 mod registry;
 mod repeat;
 mod rows;
+mod runs_on;
+mod stage;
 mod suction;
 mod suction_mouth;
 mod surface_contact;
@@ -89,12 +91,15 @@ pub use registry::Registry;
 pub use repeat::Repeat;
 pub use rows::{RowSet, Rows};
 #[doc(hidden)]
+pub use runs_on::{DescribeKernels, HostSystem, OnDevice, OnHost};
+pub use stage::Stage;
+#[doc(hidden)]
 pub use surface_contact::{Meeting, SurfaceContacts, SurfaceMemory};
 pub(crate) use surface_contact::{find_surface_springs, find_surfaces, seek_surfaces};
 pub(crate) use suture_tension::find_thread_springs;
-pub(crate) use system::BeforeSteps;
 #[doc(hidden)]
-pub use system::{Because, DescribeKernels, HostSystem, OnDevice, OnHost};
+pub use system::Because;
+pub(crate) use system::BeforeSteps;
 pub use system::{Outcome, Phase, System};
 pub(crate) use tool_contact::find_tool_springs;
 

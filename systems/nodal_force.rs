@@ -4,21 +4,21 @@ use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
 use super::rows::Rows;
+use super::stage::Stage;
 use super::system::{Phase, System};
-use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
-use crate::backend::kernel::{Fragment, Uniform, uniform};
-use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
 use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
+use serde::Serialize;
 use std::sync::Arc;
 
 /// A force (N), a signal, on each of some nodes.
-#[derive(Component, Clone, Debug)]
+#[derive(Component, Clone, Debug, Serialize)]
 pub struct NodalForce {
     /// The nodes.
+    #[serde(skip)]
     pub on: Arc<LoadedNodes>,
     signal: usize,
 }
@@ -33,7 +33,7 @@ pub fn system() -> System {
         |world| super::registry::count::<NodalForce>(world, "nodal force", "nodal forces"),
     )
     .for_load(|on, signal| Some(NodalForce { on: on.nodes()?.clone(), signal }))
-    .on_nodes(stages)
+    .with_shader::<NodalForce>("shaders/nodal_force.wgsl", include_str!("../shaders/nodal_force.wgsl"))
 }
 
 impl NodeSystem for NodalForce {
@@ -42,6 +42,10 @@ impl NodeSystem for NodalForce {
 
     fn rows(&self) -> Rows<'_> {
         Rows::List(&self.on.rows)
+    }
+
+    fn stages(&self, _: Entity, _: &World) -> Vec<Stage> {
+        vec![with_factors(Stage::of(self.rows()), &self.on.factors)]
     }
 
     fn prepare(&self, before: &Before<'_>) -> [f64; 4] {
@@ -69,38 +73,12 @@ impl NodeSystem for NodalForce {
     }
 }
 
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-struct NodalLoad {
-    signal: u32,
-}
-uniform!(NodalLoad { signal });
-
-/// One stage for each load.
-fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
-    let loads: Vec<(NodalForce, Entity)> =
-        world.query::<(&NodalForce, &OfBody)>().iter(world).map(|(load, body)| (load.clone(), body.0)).collect();
-    let mut stages = Vec::new();
-    for (force, body) in loads {
-        let load = NodalLoad { signal: force.signal as u32 };
-        let stage = NodeStage::new("nodal_force", "nodal_force", body, rows_of(body, world), shader!("nodal_force"))
-            .bind_uniform::<NodalLoad>("load", buffers.uniform("nodal_force".into(), &load.bytes()))
-            .column(Mass::NAME, buffers.column(body, Mass::NAME))
-            .column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME))
-            .of_rows(force.on.rows.clone());
-        let stage = with_factors(stage, &force.on.factors, buffers);
-        stages.push(stage.with_step(world).loaded(true));
-    }
-    stages
-}
-
 /// Adds what a load is multiplied with at each of its rows along each axis; empty: 1 at all.
-pub(super) fn with_factors(stage: NodeStage, factors: &[[f64; 3]], buffers: &mut dyn Buffers) -> NodeStage {
+pub(super) fn with_factors(stage: Stage, factors: &[[f64; 3]]) -> Stage {
     if factors.is_empty() {
         let text = "fn factor_of(i: u32) -> vec3<f32> {\n    return vec3<f32>(1.0);\n}\n";
-        return stage.own(Fragment::new("generated: the same load on all nodes", text));
+        return stage.text("generated: the same load on all nodes", text);
     }
     let factors: Vec<f32> = factors.iter().flatten().map(|&factor| factor as f32).collect();
-    let factors = buffers.constants("factors of a load".into(), bytemuck::cast_slice(&factors));
-    stage.own(shader!("load_factor")).bind("factors", factors)
+    stage.fragment(shader!("load_factor")).reals("factors", &factors)
 }

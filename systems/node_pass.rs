@@ -3,7 +3,7 @@
 
 use super::node_system::{BoundSystem, BoundSystems, Callers, NodeRows, OfRun};
 use super::node_views::Before;
-use super::system::HostSystem;
+use super::runs_on::HostSystem;
 use crate::backend::cpu::{Cpu, Declared, NodeColumns, OwnRows, ROWS_A_TASK, Touches, Undeclared};
 use crate::backend::step::step_number;
 use crate::components::*;

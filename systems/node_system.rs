@@ -5,7 +5,8 @@ use super::node_shares::{ShareOf, WantedShares, share_of, wanted_shares};
 use super::node_slopes::NodeSlopes;
 use super::node_views::{Before, ForceSlopes, MiddleOfStep, NodesAtRest};
 use super::rows::{RowSet, Rows, row_set};
-use super::system::HostSystem;
+use super::runs_on::HostSystem;
+use super::stage::Stage;
 use crate::backend::cpu::{Cpu, Declared, NodeColumns, NodeShare};
 use crate::components::*;
 use crate::math::SimdScalar;
@@ -52,6 +53,12 @@ pub trait NodeSystem: Component {
     /// says of it (`sinew explain`). A system that goes through a list of its own in [`act`](Self::act) gives the list.
     fn rows(&self) -> Rows<'_> {
         Rows::All
+    }
+
+    /// What its WGSL is called for on a GPU and reads beside columns and parameters, when the simulation is made: one
+    /// [`Stage`] after the other. Left out: one, for the nodes that [`rows`](Self::rows) says.
+    fn stages(&self, _: Entity, _: &World) -> Vec<Stage> {
+        vec![Stage::of(self.rows())]
     }
 
     /// Finds out what this step needs, before any node of the body moves.
@@ -188,7 +195,7 @@ pub struct NodeRows {
     share_of: fn(&mut World, Entity) -> Option<NodeShare>,
     row_set: fn(Option<OfSystem>, &mut World) -> RowSet,
     /// Only what is for this one of several systems calls for it.
-    of: Option<OfSystem>,
+    pub(super) of: Option<OfSystem>,
     /// See [`NodeSystem::SUMS_FORCES`].
     pub sums_forces: bool,
     /// See [`NodeSystem::MOVES_NODES`].

@@ -6,11 +6,10 @@ use super::node_system::{NodeRows, NodeSystem};
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
 use super::rows::Rows;
+use super::stage::Stage;
 use super::system::{Phase, System};
-use crate::backend::Buffers;
 use crate::backend::cpu::{Asked, Cpu, NodeColumns};
-use crate::backend::kernel::{Fragment, Uniform, uniform};
-use crate::backend::node_stage::{NodeStage, rows_of};
+use crate::backend::kernel::Fragment;
 use crate::backend::user_law::callable_fragments_of_load;
 use crate::components::*;
 use crate::materials::program::Program;
@@ -19,6 +18,7 @@ use crate::shader;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use pulp::{Simd, WithSimd};
+use serde::Serialize;
 
 /// The system of a scene's own `name`, by its number among them; `what` it is, in a few words.
 pub(super) fn system(name: &str, number: usize, what: String) -> System {
@@ -30,7 +30,7 @@ pub(super) fn system(name: &str, number: usize, what: String) -> System {
         "an entry under `systems`",
         what,
     )
-    .on_nodes(move |world, buffers| stages(number, world, buffers))
+    .with_twin::<OwnLoad>("own_load", shader!("own_load"), |_, stage| stage)
 }
 
 /// Nodes of each body at which slopes are taken, evenly from all; the lightest node is one more.
@@ -64,6 +64,19 @@ impl NodeSystem for OwnLoad {
 
     fn rows(&self) -> Rows<'_> {
         self.rows.as_deref().map_or(Rows::All, Rows::List)
+    }
+
+    fn stages(&self, _: Entity, world: &World) -> Vec<Stage> {
+        let LoadText { name, path, text, uniform, .. } = &*self.text;
+        let moves = world.resource::<Clock>().relaxation.is_none();
+        let load = InKernels { signal: self.signal, velocity_factor: moves.into() };
+        let arguments = if self.rows.is_some() { "i: u32, node: u32" } else { "node: u32" };
+        let call = format!("fn own_load({arguments}) {{\n    own_load_on(node);\n}}\n");
+        let mut own = callable_fragments_of_load();
+        own.push(Fragment::new(path.clone(), text.clone()));
+        let stage = Stage::of(self.rows()).uniform("load", &load).fragment(shader!("node_state"));
+        let stage = stage.text(format!("generated: {name} on a node"), call);
+        vec![stage.calling("force_on", name.clone(), own, uniform)]
     }
 
     fn prepare(&self, before: &Before<'_>) -> InStep {
@@ -201,51 +214,10 @@ fn gathered<T: SimdScalar, S: Simd>(simd: S, lanes: usize, of_lane: impl Fn(usiz
     T::load(simd, &numbers)
 }
 
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-struct OwnLoadUniform {
-    signal: u32,
-    velocity_factor: u32,
-}
-uniform!(OwnLoadUniform { signal, velocity_factor });
-
-/// One stage for each body that the system acts on.
-fn stages(number: usize, world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
-    let loads: Vec<(OwnLoad, Entity)> = world
-        .query::<(&OwnLoad, &OfSystem, &OfBody)>()
-        .iter(world)
-        .filter(|(_, system, _)| system.0 == number)
-        .map(|(load, _, body)| (load.clone(), body.0))
-        .collect();
-    let moves = world.resource::<Clock>().relaxation.is_none();
-    let mut stages = Vec::new();
-    for (OwnLoad { text, rows, signal }, body) in loads {
-        let name = &text.name;
-        let load = OwnLoadUniform { signal: signal as u32, velocity_factor: moves.into() };
-        let rest = world.get::<RestPosition>(body).map_or(&[][..], |rest| &rest.0);
-        let rest: Vec<[f32; 3]> = rest.iter().map(|x| x.as_vec3().to_array()).collect();
-        let mut stage = NodeStage::new(name.clone(), "own_load", body, rows_of(body, world), shader!("own_load"))
-            .bind_uniform::<OwnLoadUniform>("load", buffers.uniform(name.clone(), &load.bytes()))
-            .bind("rest_position", buffers.constants("rest_position".into(), bytemuck::cast_slice(&rest)));
-        for column in [Mass::NAME, Displacement::NAME, DisplacementIncrement::NAME, ExternalForce::NAME] {
-            stage = stage.column(column, buffers.column(body, column));
-        }
-        let arguments = if rows.is_some() { "i: u32, node: u32" } else { "node: u32" };
-        let call = format!("fn own_load({arguments}) {{\n    own_load_on(node);\n}}\n");
-        let mut own = callable_fragments_of_load();
-        own.push(Fragment::new(text.path.clone(), text.text.clone()));
-        stage = stage
-            .own(shader!("node_state"))
-            .own(Fragment::new(format!("generated: {name} on a node"), call))
-            .calling("force_on", name.clone(), own);
-        if !text.uniform.is_empty() {
-            let parameters = buffers.uniform(format!("parameters of {name}"), &text.uniform);
-            stage = stage.bind("parameters", parameters);
-        }
-        if let Some(rows) = rows {
-            stage = stage.of_rows(rows);
-        }
-        stages.push(stage.with_step(world).loaded(true));
-    }
-    stages
+#[derive(Serialize)]
+struct InKernels {
+    /// Slot of the curve.
+    signal: usize,
+    /// 1; 0 in a static analysis, whose steps are no motion.
+    velocity_factor: f32,
 }

@@ -4,7 +4,7 @@
 use super::element_forces::{BlockParts, BlockPartsItem, Precise};
 use super::node_pass::{BodyColumns, BodyColumnsItem, InStep, NodePass, act, act_after_gather, move_rows};
 use super::node_system::{BoundSystem, Callers, OfRun};
-use super::system::HostSystem;
+use super::runs_on::HostSystem;
 use crate::backend::cpu::{Cpu, NodeColumns, PatchInterior, ROWS_A_TASK, Undeclared};
 use crate::components::*;
 use crate::error::Error;

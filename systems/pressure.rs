@@ -4,23 +4,23 @@ use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
 use super::rows::Rows;
+use super::stage::Stage;
 use super::system::{Phase, System};
-use crate::backend::Buffers;
+use super::traction::with_alive;
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::face_kernel::{FaceLoad, face_loads};
-use crate::backend::kernel::{Uniform, uniform};
-use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
-use crate::error::missing;
 use crate::math::{Scalar, SimdScalar};
 use crate::shader;
 use bevy_ecs::prelude::*;
+use serde::Serialize;
 use std::sync::Arc;
 
 /// A pressure (Pa), a signal, that follows faces of the surface and pushes inwards.
-#[derive(Component, Clone, Debug)]
+#[derive(Component, Clone, Debug, Serialize)]
 pub struct Pressure {
     /// The faces, by the nodes they load.
+    #[serde(skip)]
     pub faces: Arc<FaceCorners>,
     signal: usize,
 }
@@ -39,16 +39,32 @@ pub fn system() -> System {
         |world| super::registry::count::<Pressure>(world, "pressure", "pressures"),
     )
     .for_load(|on, signal| Some(Pressure { faces: on.faces()?.clone(), signal }))
-    .on_nodes(stages)
+    .with_shader::<Pressure>("shaders/pressure.wgsl", include_str!("../shaders/pressure.wgsl"))
 }
 
 impl NodeSystem for Pressure {
-    type Columns = (&'static RestPosition, &'static Displacement, &'static mut ExternalForce);
+    type Columns = (&'static Displacement, &'static mut ExternalForce);
     /// The pressure (Pa).
     type Prepared = f64;
+    const READS_ELSEWHERE: &'static [&'static str] = &[Displacement::NAME];
 
     fn rows(&self) -> Rows<'_> {
         Rows::List(&self.faces.rows)
+    }
+
+    /// Where elements can go, one for each block behind its faces.
+    fn stages(&self, body: Entity, world: &World) -> Vec<Stage> {
+        let of_block = |FaceLoad { faces, alive }: FaceLoad| {
+            let face = |((&[a, b, c, d], behind), &weight): ((&[u32; 4], &(u32, u32)), &f64)| {
+                [a, b, c, d, behind.1, (weight as f32).to_bits()]
+            };
+            let of_faces: Vec<u32> =
+                faces.faces.iter().zip(&faces.elements).zip(&faces.weights).flat_map(face).collect();
+            let stage = Stage::of(Rows::List(&faces.rows)).integers("starts", &faces.starts);
+            let stage = stage.integers("corners", &faces.corners);
+            with_alive(with_faces(stage, &faces.faces, &of_faces, body, world), alive)
+        };
+        face_loads(&self.faces, body, world).into_iter().map(of_block).collect()
     }
 
     fn prepare(&self, before: &Before<'_>) -> f64 {
@@ -155,46 +171,12 @@ fn cross<T: Scalar>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-struct PressureLoad {
-    signal: u32,
-}
-uniform!(PressureLoad { signal });
-
-/// One stage for each load; where elements can go, one for each block behind its faces.
-fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
-    let loads: Vec<(Pressure, Entity)> =
-        world.query::<(&Pressure, &OfBody)>().iter(world).map(|(load, body)| (load.clone(), body.0)).collect();
-    let mut stages = Vec::new();
-    for (pressure, body) in loads {
-        for FaceLoad { faces, alive } in face_loads(&pressure.faces, body, world) {
-            let Some(rest) = world.get::<RestPosition>(body) else {
-                debug_assert!(false, "{}", missing("a column of a body"));
-                continue;
-            };
-            let face = |((&[a, b, c, d], behind), &weight): ((&[u32; 4], &(u32, u32)), &f64)| {
-                [a, b, c, d, behind.1, (weight as f32).to_bits()]
-            };
-            let nodes: Vec<[u32; 6]> = faces.faces.iter().zip(&faces.elements).zip(&faces.weights).map(face).collect();
-            let points: Vec<[f32; 3]> =
-                faces.faces.iter().flatten().map(|&node| rest.0[node as usize].as_vec3().to_array()).collect();
-            let load = PressureLoad { signal: pressure.signal as u32 };
-            let stage = NodeStage::new("pressure", "pressure", body, rows_of(body, world), shader!("pressure"))
-                .own(shader!("face_area"))
-                .bind_uniform::<PressureLoad>("load", buffers.uniform("pressure".into(), &load.bytes()))
-                .bind("starts", buffers.constants("starts of pressure".into(), bytemuck::cast_slice(&faces.starts)))
-                .bind("corners", buffers.constants("corners of pressure".into(), bytemuck::cast_slice(&faces.corners)))
-                .bind("faces", buffers.constants("faces of pressure".into(), bytemuck::cast_slice(&nodes)))
-                .bind("face_points", buffers.constants("points of pressure".into(), bytemuck::cast_slice(&points)))
-                .column(Displacement::NAME, buffers.column(body, Displacement::NAME))
-                .reads_elsewhere(Displacement::NAME)
-                .column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME))
-                .of_rows(faces.rows);
-            stages.push(FaceLoad::with_alive(alive, stage, buffers).with_step(world).loaded(true));
-        }
-    }
-    stages
+/// Adds what finds the areas of deformed faces: six numbers of each, its nodes first, and where these are at rest.
+pub(super) fn with_faces(stage: Stage, nodes: &[[u32; 4]], faces: &[u32], body: Entity, world: &World) -> Stage {
+    let rest = world.get::<RestPosition>(body).map_or(&[][..], |rest| &rest.0);
+    let point = |&node: &u32| rest[node as usize].as_vec3().to_array();
+    let points: Vec<f32> = nodes.as_flattened().iter().flat_map(point).collect();
+    stage.fragment(shader!("face_area")).integers("faces", faces).reals("face_points", &points)
 }
 
 #[cfg(test)]

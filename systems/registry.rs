@@ -18,10 +18,12 @@ impl Default for Registry {
 }
 
 impl Registry {
-    /// Adds a system; one of the same name is replaced.
+    /// Adds a system, behind all others of its phase; one of the same name is replaced. A scene that writes no
+    /// `schedule` has it there, as far as [it takes part](System::when).
     pub fn with(mut self, system: System) -> Self {
         self.systems.retain(|s| s.name != system.name);
-        self.systems.push(system);
+        let place = self.systems.iter().position(|s| s.phase > system.phase).unwrap_or(self.systems.len());
+        self.systems.insert(place, system);
         self
     }
 
@@ -39,7 +41,7 @@ impl Registry {
         &self.laws
     }
 
-    /// All systems: the built-in ones in the order of the step, then those added.
+    /// All systems in the order of the step.
     pub fn systems(&self) -> &[System] {
         &self.systems
     }

@@ -5,13 +5,10 @@ use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
 use super::rows::Rows;
 use super::system::{Phase, System};
-use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
-use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
 use crate::math::SimdScalar;
 use crate::shader;
-use bevy_ecs::prelude::*;
 
 /// Adds what `suture_tension` has found.
 pub fn system() -> System {
@@ -22,7 +19,7 @@ pub fn system() -> System {
         "`Suture(...)` under `attachments`",
         |world| super::registry::count::<Sutured>(world, "body with sutures", "bodies with sutures"),
     )
-    .on_nodes(stages)
+    .with_twin::<Sutured>("suture", shader!("suture"), |_, stage| stage)
 }
 
 /// Threads go slack and taut: at 0.9 of the step that is stable with them drawn each time may make energy (a thread of
@@ -51,18 +48,4 @@ impl NodeSystem for Sutured {
         let stiffness = each.map(|(stiffness, mass)| stiffness / mass).fold(0.0, f64::max);
         ForceSlopes { stiffness: SLACK * stiffness, damping: 0.0 }
     }
-}
-
-/// One stage for each body.
-fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
-    let all: Vec<(Entity, Vec<u32>)> =
-        world.query::<(Entity, &Sutured)>().iter(world).map(|(body, sutured)| (body, sutured.rows.clone())).collect();
-    let stage = |(body, rows): (Entity, Vec<u32>)| {
-        let stage = NodeStage::new("suture", "suture", body, rows_of(body, world), shader!("suture"))
-            .of_rows(rows)
-            .column(SutureForce::NAME, buffers.column(body, SutureForce::NAME))
-            .column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME));
-        stage.with_step(world).loaded(true)
-    };
-    all.into_iter().map(stage).collect()
 }

@@ -1,14 +1,15 @@
 //! What a system is.
 
 use super::host_forces::HostSlopes;
-use super::node_pass::{NodePass, node_pass};
-use super::node_stages::{check_parameters, derived_stages};
+use super::node_stages::Twin;
 use super::node_system::{NodeRows, NodeSystem};
 use super::repeat::Repeat;
+use super::runs_on::{DescribeKernels, HostSystem, OnDevice, OnHost};
+use super::stage::Stage;
 use crate::backend::Buffers;
 use crate::backend::kernel::Fragment;
 use crate::backend::kernel::Kernel;
-use crate::backend::node_stage::{DescribeStages, NodeStage, node_kernels};
+use crate::backend::node_stage::NodeStage;
 use crate::components::{Body, HeldEnergy, LoadedRows, OfBody};
 use crate::error::{Error, missing};
 use crate::snapshot::StateAccess;
@@ -39,72 +40,8 @@ pub enum Phase {
     Observe,
 }
 
-/// A system on the host: what the CPU backend runs, and what custom systems are on both backends.
-pub type HostSystem = Box<dyn bevy_ecs::system::System<In = (), Out = Result<(), Error>>>;
-
-/// What a system is on the host.
-pub enum OnHost {
-    /// A system by itself.
-    System(Box<dyn Fn() -> HostSystem + Send + Sync>),
-    /// Something to each node, in passes that it may share with its neighbours in the step.
-    Nodes(NodeRows),
-    /// A system by itself that finds the forces of elements patch by patch: nodes inside a patch may move with it.
-    Elements(Box<dyn Fn() -> HostSystem + Send + Sync>),
-}
-
-impl OnHost {
-    /// The system of a name, by itself in a pass if it is one of nodes.
-    pub fn alone(&self, name: &str, world: &mut World) -> HostSystem {
-        match self {
-            OnHost::System(make) | OnHost::Elements(make) => make(),
-            OnHost::Nodes(rows) => {
-                let pass = NodePass::new([(name, *rows)], world);
-                node_pass(pass, world)
-            }
-        }
-    }
-
-    /// What it does to each node, if that is what it does.
-    pub fn nodes(&self) -> Option<NodeRows> {
-        match self {
-            OnHost::Nodes(rows) => Some(*rows),
-            OnHost::System(_) | OnHost::Elements(_) => None,
-        }
-    }
-}
-
 /// Does what must be done before steps are submitted; gives how many there may be at most, one or more.
 pub(crate) type BeforeSteps = fn(&mut World) -> Result<u64, Error>;
-
-/// Describes the kernels of a system for a world, bound to buffers.
-pub type DescribeKernels = fn(&mut World, &mut dyn Buffers) -> Vec<Kernel>;
-
-/// What a system does on a GPU.
-#[derive(Clone)]
-pub enum OnDevice {
-    /// Nothing: it runs on the host.
-    None,
-    /// Kernels of its own.
-    Kernels(DescribeKernels),
-    /// Something to each node, in kernels that it may share with its neighbours in the step.
-    Stages(DescribeStages),
-}
-
-impl OnDevice {
-    /// Whether there is anything.
-    pub fn is_some(&self) -> bool {
-        !matches!(self, OnDevice::None)
-    }
-
-    /// The kernels of one system by itself.
-    pub fn kernels(&self, world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
-        match self {
-            OnDevice::None => Vec::new(),
-            OnDevice::Kernels(kernels) => kernels(world, buffers),
-            OnDevice::Stages(stages) => node_kernels(stages(world, buffers), false, buffers),
-        }
-    }
-}
 
 /// One system of the step.
 pub struct System {
@@ -116,8 +53,8 @@ pub struct System {
     pub does: String,
     /// What in a scene calls for it.
     pub called_for_by: &'static str,
-    /// Why the world needs it; `None` when it does not. A schedule that a scene writes out must hold all that are
-    /// needed.
+    /// Why it takes part where a scene writes no `schedule`; `None` when it does not. A schedule that is written out
+    /// must hold all built-in systems that would.
     pub because: Because,
     /// What runs on the host.
     pub host: OnHost,
@@ -163,7 +100,10 @@ pub type Because = Arc<dyn Fn(&mut World) -> Option<String> + Send + Sync>;
 type ReadParameters = fn(ron::Value, &mut World) -> Result<(), String>;
 
 /// Says why what calls for a system in a world does not fit its twin on a GPU, where it does not.
-type CheckParameters = fn(&mut World) -> Result<(), String>;
+type CheckParameters = Arc<dyn Fn(&mut World) -> Result<(), String> + Send + Sync>;
+
+/// What in a scene calls for a system that takes parameters.
+const GIVEN: &str = "its `parameters`";
 
 /// What a system of one's own may return.
 pub trait Outcome: 'static {
@@ -189,7 +129,7 @@ impl Outcome for Result<(), Error> {
 impl System {
     /// A system of one's own, run on the host on both backends, once a step. `system` is any bevy system function: its
     /// queries say which columns it reads (they are brought to the host before it runs) and which it writes (they go
-    /// back to the device after). It runs only when a scene's schedule names it.
+    /// back to the device after). It takes part in all scenes, at its phase, or as it says by [`when`](Self::when).
     ///
     /// It returns nothing or a `Result<(), Error>`, whose error ends the run. `system` is called through a function
     /// without captures, so that each simulation gets its own copy.
@@ -208,8 +148,8 @@ impl System {
             name: name.into(),
             phase,
             does: does.into(),
-            called_for_by: "its name in the scene's `schedule`",
-            because: Arc::new(|_| None),
+            called_for_by: "the program",
+            because: Arc::new(|_| Some("the program has added it".into())),
             host,
             device: OnDevice::None,
             observes: false,
@@ -233,13 +173,28 @@ impl System {
     /// `P`, which the system finds as `Res<P>`. What does not fit is an error when the scene is loaded.
     ///
     /// Numbers, texts, truth values, lists and structs can be read; a field that may be left out needs
-    /// `#[serde(default)]`. The name `every` is taken: it is the time between two runs (s).
+    /// `#[serde(default)]`. The name `every` is taken: it is the time between two runs (s). Where a scene writes no
+    /// `schedule`, the system takes part if the scene gives its parameters.
     pub fn with_parameters<P: Resource + serde::de::DeserializeOwned>(mut self) -> Self {
         self.parameters = Some(|value, world| {
             let parameters: P = value.into_rust().map_err(|error| error.to_string())?;
             world.insert_resource(parameters);
             Ok(())
         });
+        self.when(GIVEN, |world| world.contains_resource::<P>().then(|| "the scene gives its `parameters`".into()))
+    }
+
+    /// Says when it takes part where a scene writes no `schedule`: when `because` gives a reason, which `explain`
+    /// shows, when the simulation is made; `called_for_by` is what in a scene brings that about. Several have to agree,
+    /// those of [parameters](Self::with_parameters) among them.
+    pub fn when(
+        mut self,
+        called_for_by: &'static str,
+        because: impl Fn(&mut World) -> Option<String> + Send + Sync + 'static,
+    ) -> Self {
+        let before = self.because;
+        self.because = Arc::new(move |world| before(world).and_then(|_| because(world)));
+        self.called_for_by = called_for_by;
         self
     }
 
@@ -271,7 +226,8 @@ impl System {
     }
 
     /// A system of one's own that works node by node, each entity with an `S` on its body: see [`NodeSystem`]. It
-    /// shares passes with its neighbours in the step. It runs only when a scene's schedule names it.
+    /// shares passes with its neighbours in the step. It takes part in all scenes, at its phase, or as it says by
+    /// [`when`](Self::when).
     pub fn of_nodes<S: NodeSystem>(name: impl Into<String>, phase: Phase, does: impl Into<String>) -> Self {
         Self::new(name, phase, does, OnHost::Nodes(NodeRows::of::<S>()))
     }
@@ -284,18 +240,33 @@ impl System {
     /// uniform `parameters`; `step.time` and `step.time_step` (s). In place of columns of forces there are functions:
     /// `internal_force_of(node)`, `external_force_of(node)` and `add_load(node, force)`. Where it keeps
     /// [numbers](NodeSystem::OWN_NUMBERS), there are `own(node, i)` and `set_own(node, i, value)`; where it
-    /// [chooses](NodeSystem::choose) nodes, it is called for these.
-    pub fn with_shader<S: NodeSystem + serde::Serialize>(mut self, path: &'static str, text: &'static str) -> Self {
+    /// [chooses](NodeSystem::choose) nodes, it is called for these. One that goes through a [list](NodeSystem::rows) of
+    /// its own, which must ascend then, is called for that, as `fn NAME(i: u32, node: u32)` with the place in it; what
+    /// else it reads, its [stages](NodeSystem::stages) say.
+    pub fn with_shader<S: NodeSystem + serde::Serialize>(self, path: &'static str, text: &'static str) -> Self {
         let name = self.name.clone();
-        self.check = Some(check_parameters::<S>);
-        self.device = OnDevice::Stages(Arc::new(move |world, buffers| {
-            derived_stages::<S>(&name, &Fragment::new(path, text), world, buffers)
-        }));
+        self.with_twin::<S>(name, Fragment::new(path, text), |system, stage| stage.uniform("parameters", system))
+    }
+
+    /// The same for components that are no structs of numbers: what there is of such, `component` adds, and kernels
+    /// call the function `call`.
+    pub(crate) fn with_twin<S: NodeSystem>(
+        mut self,
+        call: impl Into<String>,
+        shader: Fragment,
+        component: fn(&S, Stage) -> Stage,
+    ) -> Self {
+        let of = self.host.nodes().and_then(|rows| rows.of);
+        let twin = Arc::new(Twin { name: self.name.clone(), call: call.into(), shader, of, component });
+        let checked = twin.clone();
+        self.check = Some(Arc::new(move |world| checked.check(world)));
+        self.device = OnDevice::Stages(Arc::new(move |world, buffers| twin.stages(world, buffers)));
         self
     }
 
     /// A system of nodes that takes parameters from the scene: what stands under its name in `parameters` is read as an
-    /// `S` for each body. What does not fit is an error when the scene is loaded.
+    /// `S` for each body. What does not fit is an error when the scene is loaded. Where a scene writes no `schedule`,
+    /// the system takes part if the scene gives its parameters.
     pub fn on_each_body<S: NodeSystem + Clone + serde::de::DeserializeOwned>(mut self) -> Self {
         self.parameters = Some(|value, world| {
             let system: S = value.into_rust().map_err(|error| error.to_string())?;
@@ -303,7 +274,9 @@ impl System {
             world.spawn_batch(bodies.into_iter().map(|body| (system.clone(), OfBody(body))).collect::<Vec<_>>());
             Ok(())
         });
-        self
+        self.when(GIVEN, |world| {
+            super::registry::count::<S>(world, "body with its `parameters`", "bodies with its `parameters`")
+        })
     }
 
     /// A built-in system of nodes.
@@ -378,7 +351,9 @@ impl System {
         self
     }
 
-    /// With what it does to nodes, in kernels that neighbours may share.
+    /// The same where a column stands in the place of another (`InertialMass` in that of `Mass`), which no author of a
+    /// text could know, or where one system is two kernels on devices that bind few buffers: `integrate`, and what
+    /// foresees where it moves nodes.
     pub(crate) fn on_nodes(
         mut self,
         stages: impl Fn(&mut World, &mut dyn Buffers) -> Vec<NodeStage> + Send + Sync + 'static,

@@ -5,22 +5,22 @@ use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
 use super::rows::Rows;
+use super::stage::Stage;
 use super::system::{Phase, System};
-use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::face_kernel::{FaceLoad, face_loads};
-use crate::backend::kernel::{Uniform, uniform};
-use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
 use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
+use serde::Serialize;
 use std::sync::Arc;
 
 /// A force per rest area (Pa), a signal, on faces of the surface.
-#[derive(Component, Clone, Debug)]
+#[derive(Component, Clone, Debug, Serialize)]
 pub struct Traction {
     /// The faces, by the nodes they load.
+    #[serde(skip)]
     pub faces: Arc<FaceCorners>,
     signal: usize,
 }
@@ -36,7 +36,7 @@ pub fn system() -> System {
         |world| super::registry::count::<Traction>(world, "traction", "tractions"),
     )
     .for_load(|on, signal| Some(Traction { faces: on.faces()?.clone(), signal }))
-    .on_nodes(stages)
+    .with_shader::<Traction>("shaders/traction.wgsl", include_str!("../shaders/traction.wgsl"))
 }
 
 impl NodeSystem for Traction {
@@ -45,6 +45,20 @@ impl NodeSystem for Traction {
 
     fn rows(&self) -> Rows<'_> {
         Rows::List(&self.faces.rows)
+    }
+
+    /// Where elements can go, one for each block behind its faces.
+    fn stages(&self, body: Entity, world: &World) -> Vec<Stage> {
+        let of_block = |FaceLoad { faces, alive }: FaceLoad| {
+            let place = |corner: &u32| (*corner as usize / 4, *corner as usize % 4);
+            let areas: Vec<f32> =
+                faces.corners.iter().map(place).map(|(face, corner)| faces.areas[face][corner] as f32).collect();
+            let behind: Vec<u32> = faces.corners.iter().map(place).map(|(face, _)| faces.elements[face].1).collect();
+            let stage = Stage::of(Rows::List(&faces.rows)).integers("starts", &faces.starts);
+            let stage = stage.reals("areas", &areas).integers("behind", &behind);
+            with_alive(with_factors(stage, &faces.factors), alive)
+        };
+        face_loads(&self.faces, body, world).into_iter().map(of_block).collect()
     }
 
     fn prepare(&self, before: &Before<'_>) -> [f64; 4] {
@@ -77,35 +91,11 @@ impl NodeSystem for Traction {
     }
 }
 
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-struct TractionLoad {
-    signal: u32,
-}
-uniform!(TractionLoad { signal });
-
-/// One stage for each load; where elements can go, one for each block behind its faces.
-fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
-    let loads: Vec<(Traction, Entity)> =
-        world.query::<(&Traction, &OfBody)>().iter(world).map(|(load, body)| (load.clone(), body.0)).collect();
-    let mut stages = Vec::new();
-    for (traction, body) in loads {
-        for FaceLoad { faces, alive } in face_loads(&traction.faces, body, world) {
-            let place = |corner: &u32| (*corner as usize / 4, *corner as usize % 4);
-            let areas: Vec<f32> =
-                faces.corners.iter().map(place).map(|(face, corner)| faces.areas[face][corner] as f32).collect();
-            let behind: Vec<u32> = faces.corners.iter().map(place).map(|(face, _)| faces.elements[face].1).collect();
-            let load = TractionLoad { signal: traction.signal as u32 };
-            let stage = NodeStage::new("traction", "traction", body, rows_of(body, world), shader!("traction"))
-                .bind_uniform::<TractionLoad>("load", buffers.uniform("traction".into(), &load.bytes()))
-                .bind("starts", buffers.constants("starts of traction".into(), bytemuck::cast_slice(&faces.starts)))
-                .bind("areas", buffers.constants("areas of traction".into(), bytemuck::cast_slice(&areas)))
-                .bind("behind", buffers.constants("elements of traction".into(), bytemuck::cast_slice(&behind)))
-                .column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME))
-                .of_rows(faces.rows);
-            let stage = with_factors(stage, &faces.factors, buffers);
-            stages.push(FaceLoad::with_alive(alive, stage, buffers).with_step(world).loaded(true));
-        }
+/// Adds what tells which elements of a block are there; `None`: all are, for good.
+pub(super) fn with_alive(stage: Stage, block: Option<Entity>) -> Stage {
+    match block {
+        Some(block) => stage.fragment(shader!("alive")).column(Alive::NAME, block, Alive::NAME),
+        None => stage
+            .text("generated: no element is ever removed", "fn bears(element: u32) -> bool {\n    return true;\n}\n"),
     }
-    stages
 }

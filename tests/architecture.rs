@@ -257,6 +257,8 @@ fn every_system_is_a_file_of_its_name_and_a_line_of_the_step() {
                 "registry",
                 "repeat",
                 "rows",
+                "runs_on",
+                "stage",
                 "system",
             ]
             .contains(&stem.as_str())

@@ -153,13 +153,8 @@ fn every_combination_of_effects_composes_with_no_more_buffers_than_there_may_be(
             let patches = kernel.all_fragments().iter().any(|fragment| fragment.path == "shaders/patches.wgsl");
             let width = match (kernel.entry, patches) {
                 ("many_steps", _) => kernel.threads,
-                (_, patches) => {
-                    if patches {
-                        128
-                    } else {
-                        64
-                    }
-                }
+                (_, true) => 128,
+                (_, false) => 64,
             };
             assert_eq!(entry.workgroup_size, [width, 1, 1], "{}", kernel.label);
             assert!(entry.workgroup_memory as usize <= WEBGPU_WORKGROUP_MEMORY, "{}", kernel.label);
@@ -209,7 +204,9 @@ fn has_the_structs_of_rust(kernel: &Kernel, composer: &mut Composer) {
     for binding in composed.bindings.iter().filter(|b| b.kind == BindingKind::Uniform && b.name != "step") {
         let layout = kernel.layouts.iter().find(|(name, _)| *name == binding.name).map(|(_, layout)| layout);
         let Some(layout) = layout else {
-            assert_eq!(binding.name, "limits", "{}: Rust says nothing of `{}`", kernel.label, binding.name);
+            // `parameters` are declared by what Rust has
+            let known = ["limits", "parameters"].contains(&binding.name.as_str());
+            assert!(known, "{}: Rust says nothing of `{}`", kernel.label, binding.name);
             continue;
         };
         assert!(binding.type_name.contains(layout.name), "{} is not {}", binding.type_name, layout.name);
@@ -355,6 +352,8 @@ fn every_shader_is_named_after_a_system_an_element_or_a_material_or_listed() {
             "registry",
             "repeat",
             "rows",
+            "runs_on",
+            "stage",
             "host_forces",
             "node_shares",
             "node_slices",

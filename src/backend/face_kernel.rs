@@ -1,10 +1,6 @@
 //! Faces as the kernels of loads on the surface see them.
 
-use super::Buffers;
-use super::kernel::{BufferId, Fragment};
-use super::node_stage::NodeStage;
-use crate::components::{Alive, Authoring, Column, FaceCorners};
-use crate::shader;
+use crate::components::{Alive, Authoring, FaceCorners};
 use bevy_ecs::prelude::*;
 
 /// Faces that one kernel loads.
@@ -42,20 +38,4 @@ fn faces_behind(faces: &FaceCorners, block: u32) -> FaceCorners {
         }
     }
     some
-}
-
-impl FaceLoad {
-    /// Adds what tells a stage which elements are there.
-    pub fn with_alive(alive: Option<Entity>, stage: NodeStage, buffers: &mut dyn Buffers) -> NodeStage {
-        match alive {
-            Some(block) => {
-                let alive: BufferId = buffers.column(block, Alive::NAME);
-                stage.own(shader!("alive")).bind(Alive::NAME, alive)
-            }
-            None => stage.own(Fragment::new(
-                "generated: no element is ever removed",
-                "fn bears(element: u32) -> bool {\n    return true;\n}\n",
-            )),
-        }
-    }
 }

@@ -196,8 +196,13 @@ impl NodeStage {
     }
 
     /// Binds a `var<uniform>`.
-    pub fn bind_uniform<U: Uniform>(mut self, variable: &'static str, buffer: BufferId) -> Self {
-        self.layouts.push((variable.into(), U::LAYOUT));
+    pub fn bind_uniform<U: Uniform>(self, variable: &'static str, buffer: BufferId) -> Self {
+        self.bind_laid_out(variable, Some(U::LAYOUT), buffer)
+    }
+
+    /// The same where its layout may be known.
+    pub fn bind_laid_out(mut self, variable: &'static str, layout: Option<Layout>, buffer: BufferId) -> Self {
+        self.layouts.extend(layout.map(|layout| (variable.into(), layout)));
         self.bind(variable, buffer)
     }
 

@@ -13,13 +13,15 @@ pub struct Fixed {
 }
 
 /// Nodes that move as told along some axes: u = A·(X − center) + b with A and b from the signal.
-#[derive(Component, Clone, Debug)]
+#[derive(Component, Clone, Debug, serde::Serialize)]
 pub struct Prescribed {
     /// Rows of the body's node columns.
+    #[serde(skip)]
     pub rows: Vec<u32>,
     /// Bits 0, 1, 2: x, y, z.
     pub axes: u32,
     /// X − center of each row (m).
+    #[serde(skip)]
     pub arms: Vec<DVec3>,
     /// First of three slots in [`Signals`](super::Signals).
     pub signal: usize,

@@ -23,8 +23,7 @@ impl<'a> Known<'a> {
         self.registry.laws()
     }
 
-    /// All systems: the built-in ones in the order of the step, among them, after the other loads, the scene's own;
-    /// then those that were added to the registry.
+    /// All systems in the order of the step; the scene's own come after the other loads.
     pub fn systems(&self) -> impl Iterator<Item = &System> {
         let all = self.registry.systems();
         let loads = all.iter().position(|system| system.phase > Phase::Loads).unwrap_or(all.len());

@@ -11,9 +11,10 @@ use ron::value::Map;
 /// The parameter that the engine takes itself: the time between two runs (s).
 const EVERY: &str = "every";
 
-/// Hands each system of one's own that the scene's schedule names its parameters. Complaints go to `diagnostics`.
+/// Hands its parameters to each system of one's own that the scene's schedule names, or, where there is none, that it
+/// gives some. Complaints go to `diagnostics`.
 pub(super) fn hand_out(scene: &Scene, known: &Known<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
-    let named = scene.schedule.as_deref().unwrap_or_default();
+    let named = |name: &String| scene.schedule.as_ref().map(|names| names.contains(name));
     for name in scene.parameters.keys() {
         let path = path_of(name);
         match known.get(name) {
@@ -40,7 +41,7 @@ pub(super) fn hand_out(scene: &Scene, known: &Known<'_>, world: &mut World, diag
                     .error_at(path.as_str(), format!("the built-in system `{name}` has no parameters"))
                     .note(format!("what it does comes from {}", system.called_for_by));
             }
-            Some(_) if !named.contains(name) => {
+            Some(_) if named(name) == Some(false) => {
                 diagnostics
                     .warn_at(path.as_str(), format!("`{name}` is not in the schedule and does nothing"))
                     .note(format!("add \"{name}\" to `schedule`"));
@@ -48,9 +49,13 @@ pub(super) fn hand_out(scene: &Scene, known: &Known<'_>, world: &mut World, diag
             Some(_) => {}
         }
     }
-    for (place, name) in named.iter().enumerate() {
-        let Some(system) = known.get(name).filter(|system| system.custom) else { continue };
+    for system in known.systems().filter(|system| system.custom) {
+        let name = &system.name;
         let given = scene.parameters.get(name);
+        if !named(name).unwrap_or(given.is_some()) {
+            continue;
+        }
+        let place = scene.schedule.iter().flatten().position(|other| other == name).unwrap_or_default();
         let path = if given.is_some() { path_of(name) } else { format!("schedule[{place}]") };
         let mut complain = |message: String| {
             diagnostics.error_at(path.as_str(), message).note(ALLOWED);
@@ -77,7 +82,7 @@ pub(super) fn hand_out(scene: &Scene, known: &Known<'_>, world: &mut World, diag
                 Some(_) | None => Ok(()),
             },
         };
-        if let Err(reason) = result.and_then(|()| system.check.map_or(Ok(()), |check| check(world))) {
+        if let Err(reason) = result.and_then(|()| system.check.as_ref().map_or(Ok(()), |check| check(world))) {
             complain(format!("the parameters of `{name}` do not fit: {reason}"));
         }
     }

@@ -20,7 +20,7 @@ const DENSITIES: RangeInclusive<f64> = 10.0..=30_000.0;
 const MODULI: RangeInclusive<f64> = 5.0..=1e12;
 
 /// Warns of what is far from tissue, and of bodies under load that nothing holds.
-pub(super) fn check(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
+pub(super) fn check(assembly: &Assembly<'_>, may_hold: bool, world: &mut World, diagnostics: &mut Diagnostics) {
     let scene = &assembly.scene.scene;
     sizes(assembly, diagnostics);
     materials(scene, world, diagnostics);
@@ -32,7 +32,7 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             unusual(parts.amplitude.length(), &usual.range, unit, parts.name, usual.hint, path, diagnostics);
         }
     }
-    unheld(assembly, world, diagnostics);
+    unheld(assembly, may_hold, world, diagnostics);
 }
 
 fn unusual(
@@ -83,9 +83,9 @@ fn materials(scene: &Scene, world: &mut World, diagnostics: &mut Diagnostics) {
 }
 
 /// Bodies that loads act on and nothing holds fly away: seldom meant, and never by who forgot a constraint.
-fn unheld(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
-    // a scene's own systems may hold what they like; a constraint that is wrong was meant to hold
-    if assembly.scene.scene.schedule.is_some() || diagnostics.has_error_in("constraints") {
+fn unheld(assembly: &Assembly<'_>, may_hold: bool, world: &mut World, diagnostics: &mut Diagnostics) {
+    // a constraint that is wrong was meant to hold
+    if may_hold || diagnostics.has_error_in("constraints") {
         return;
     }
     let held: Vec<Entity> =

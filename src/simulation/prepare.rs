@@ -4,7 +4,7 @@ use super::Options;
 use super::known::Known;
 use super::parameters::{hand_out, set_intervals};
 use super::run::WHOLE;
-use super::schedule::{Scheduled, check_names, resolve};
+use super::schedule::{Scheduled, check_names, resolve, takes_part};
 use super::stable_step::{self, Stability};
 use super::{contact_springs, outputs, plausible};
 use crate::assembly::{Assembly, assemble, assemble_in_time, insert_laws};
@@ -56,7 +56,10 @@ pub(super) fn prepare<'a>(
     let (clock, stability, steps) = clock(scene, known, world, diagnostics)?;
     outputs::check(scene, &clock, steps, diagnostics);
     outputs::check_curves(scene, &clock, diagnostics);
-    plausible::check(&assembly, world, diagnostics);
+    let names = scene.scene.schedule.as_deref();
+    // a program's own systems may hold what they like
+    let may_hold = names.is_some() || known.systems().any(|s| s.custom && takes_part(s, names, world));
+    plausible::check(&assembly, may_hold, world, diagnostics);
     if !clock.velocities_at_ends && clock.relaxation.is_none() {
         contact_springs::check(&scene.scene, &stability, diagnostics);
     }
@@ -66,7 +69,7 @@ pub(super) fn prepare<'a>(
         world.insert_resource(TrialForces::default());
     }
     assemble_in_time(&assembly, world, diagnostics);
-    let mut schedule = resolve(scene.scene.schedule.as_deref(), known, world, diagnostics);
+    let mut schedule = resolve(names, known, world, diagnostics);
     set_intervals(&scene.scene, clock.time_step, &mut schedule);
     if clock.velocities_at_ends || scene.scene.is_static_by_newton() {
         super::implicit::check(&schedule, diagnostics);

@@ -52,8 +52,17 @@ pub fn check_names(names: &[String], known: &Known<'_>, diagnostics: &mut Diagno
     }
 }
 
-/// The systems of a scene in order: those it names, as far as there are such, or those it needs. That one is missing
-/// which it needs goes to `diagnostics`.
+/// Whether a scene has a system: one that its schedule names, or, where it writes none, one that its world calls for.
+pub fn takes_part(system: &System, names: Option<&[String]>, world: &mut World) -> bool {
+    match names {
+        Some(names) => names.contains(&system.name),
+        None => (system.because)(world).is_some(),
+    }
+}
+
+/// The systems of a scene in order: those it names, as far as there are such, or those that its world calls for. That
+/// one of the engine's own is missing which it calls for goes to `diagnostics`; of a program's own the schedule says
+/// which take part.
 pub fn resolve<'a>(
     names: Option<&[String]>,
     known: &'a Known<'_>,
@@ -71,10 +80,11 @@ pub fn resolve<'a>(
     };
     let mut schedule: Vec<Scheduled<'a>> = Vec::new();
     for system in names.iter().filter_map(|name| known.get(name)) {
-        let because = (system.because)(world).unwrap_or_else(|| "the scene's schedule names it".into());
+        let because = (system.because)(world).filter(|_| !system.custom);
+        let because = because.unwrap_or_else(|| "the scene's schedule names it".into());
         schedule.push(Scheduled::new(system, because, world));
     }
-    for system in known.systems() {
+    for system in known.systems().filter(|system| !system.custom) {
         if let Some(because) = (system.because)(world)
             && !names.contains(&system.name)
         {

@@ -8,6 +8,7 @@ use super::frequency::{Largest, PRODUCT, largest_eigenvalue, largest_worth};
 use super::known::Known;
 use super::load_rates::LoadRates;
 use super::nodal::bound_at_rest;
+use super::schedule::takes_part;
 use super::tangent::Tangent;
 use super::{Simulation, added_mass};
 use crate::assembly::{StableStep, stable_step};
@@ -161,9 +162,9 @@ pub(super) fn choose(
             .warn_at("integration.bound", reason)
             .note("`bound: Auto` stays with the stiffest element, which is safe");
     }
-    let named = scene.scene.schedule.as_deref().unwrap_or_default();
-    let running = known.systems().filter(|system| !system.custom || named.contains(&system.name));
-    let loads = LoadRates::of(running, scene.scene.duration, world);
+    let names = scene.scene.schedule.as_deref();
+    let running: Vec<_> = known.systems().filter(|system| !system.custom || takes_part(system, names, world)).collect();
+    let loads = LoadRates::of(running.into_iter(), scene.scene.duration, world);
     // what cannot be found is an error of the scene, which may have more
     let loads = loads.inspect_err(|error| _ = diagnostics.error(error.to_string())).unwrap_or_default();
     let found = seek(&scene.scene, certain, stays.is_none(), &loads, world);

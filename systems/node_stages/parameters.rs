@@ -5,8 +5,7 @@ use serde::ser::{
 };
 use std::fmt::{Display, Formatter, Write};
 
-/// The declaration of a uniform `parameters`, and its bytes, each member on a multiple of 16; both empty where there
-/// are no members.
+/// The declaration of a uniform, and its bytes, each member on a multiple of 16; both empty where there are no members.
 #[derive(Debug, Default, PartialEq)]
 pub struct Parameters {
     /// WGSL.
@@ -16,13 +15,13 @@ pub struct Parameters {
 }
 
 impl Parameters {
-    /// Of a struct whose members are numbers, truth values, and vectors of two to four real numbers. Whole numbers are
-    /// `i32`, those without a sign and truth values `u32`, others `f32`, whatever their values.
+    /// The uniform `name` of a struct whose members are numbers, truth values, and vectors of two to four real numbers.
+    /// Whole numbers are `i32`, those without a sign and truth values `u32`, others `f32`, whatever their values.
     ///
     /// # Errors
     /// A member that is nothing else, by its name.
-    pub fn of<S: Serialize>(parameters: &S) -> Result<Self, String> {
-        parameters.serialize(OfStruct::default()).map_err(|Unfit(what)| what)
+    pub fn of<S: Serialize>(name: &'static str, parameters: &S) -> Result<Self, String> {
+        parameters.serialize(OfStruct { name, ..OfStruct::default() }).map_err(|Unfit(what)| what)
     }
 }
 
@@ -50,6 +49,8 @@ type Member = (String, Vec<u32>);
 /// Members that there are so far.
 #[derive(Default)]
 struct OfStruct {
+    /// Of the uniform.
+    name: &'static str,
     members: String,
     bytes: Vec<u8>,
 }
@@ -67,12 +68,13 @@ impl SerializeStruct for OfStruct {
     }
 
     fn end(self) -> Result<Parameters, Unfit> {
-        let Self { members, bytes } = self;
+        let Self { name, members, bytes } = self;
         if bytes.is_empty() {
             return Ok(Parameters::default());
         }
-        let uniform = "@group(0) @binding(0) var<uniform> parameters: Parameters;";
-        Ok(Parameters { declared: format!("struct Parameters {{\n{members}}}\n{uniform}\n"), bytes })
+        let of = format!("{}{}", name[..1].to_uppercase(), &name[1..]);
+        let uniform = format!("@group(0) @binding(0) var<uniform> {name}: {of};");
+        Ok(Parameters { declared: format!("struct {of} {{\n{members}}}\n{uniform}\n"), bytes })
     }
 }
 

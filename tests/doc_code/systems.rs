@@ -65,6 +65,36 @@ mod of_nodes {
 }
 
 #[rustfmt::skip]
+mod beside_columns {
+    use sinew::prelude::*;
+    use sinew::systems::{Rows, Stage};
+
+    #[derive(Component)]
+    struct Anchors { rows: Vec<u32>, goals: Vec<f32> }
+
+    impl NodeSystem for Anchors {
+        type Columns = (&'static Displacement, &'static mut ExternalForce);
+        type Prepared = ();
+
+        fn rows(&self) -> Rows<'_> {
+            Rows::List(&self.rows)
+        }
+
+        fn stages(&self, _: Entity, _: &World) -> Vec<Stage> {
+            vec![Stage::of(self.rows()).reals("goals", &self.goals)]
+        }
+
+        fn prepare(&self, _: &Before<'_>) {}
+
+        fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+            ForceSlopes::NONE
+        }
+
+        fn act<T: SimdScalar>(&self, (): &(), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {}
+    }
+}
+
+#[rustfmt::skip]
 mod on_the_host {
     use sinew::prelude::*;
 
@@ -129,6 +159,23 @@ mod slopes {
             .with_parameters::<Hanger>()
             .with_slopes(slopes)
             .with_energy(energy);
+        system
+    }
+}
+
+#[rustfmt::skip]
+mod taking_part {
+    use sinew::components::DampingCoefficient;
+    use sinew::prelude::*;
+
+    fn pull() {}
+
+    fn registered() -> System {
+        let system = System::custom("hanger", Phase::Loads, "holds what is high", pull)
+            .when("damping of a material", |world| {
+                let damped = world.query::<&DampingCoefficient>().iter(world).count();
+                (damped > 0).then(|| "a body is damped".into())
+            });
         system
     }
 }

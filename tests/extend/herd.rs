@@ -49,7 +49,6 @@ const SCENE: &str = r#"(
     bodies: {"cube": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (6, 6, 6)), material: "tissue", spin: (0, 0, 3))},
     materials: {"tissue": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.3))},
     constraints: [Fixed(on: Set("z0"))],
-    schedule: ["boundary", "element_forces", "gather", "herd", "integrate", "observe"],
     parameters: {"herd": (stiffness: 2e3)},
 )"#;
 

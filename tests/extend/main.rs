@@ -2,6 +2,7 @@
 //! file and its WGSL file, or by one of them. They run on both backends.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod anchors;
 mod bond;
 mod gent;
 mod hanger;
@@ -13,6 +14,7 @@ mod plane;
 mod refused;
 #[path = "../source/mod.rs"]
 mod source;
+mod takes_part;
 mod wind;
 
 use sinew::components::Precision;
@@ -30,7 +32,6 @@ const SCENE: &str = r#"(
         damping: 60,
     )},
     loads: [Gravity(acceleration: (0, 0, -9.81))],
-    schedule: ["boundary", "element_forces", "gather", "gravity", "wind", "plane", "integrate", "observe"],
     parameters: {
         "wind": (acceleration: (0.5, 0, 0), height: 0.1),
         "plane": (height: -0.005, stiffness: 4e6, damping: 200),
@@ -108,18 +109,16 @@ fn fast_paths_stay_on_with_them() {
     for (cells, small) in [(4, true), (12, false)] {
         let told = |systems: &str| {
             let cells = format!("bodies.cube.mesh.cells=({cells}, {cells}, {cells})");
-            let schedule = format!(
-                "schedule=[\"boundary\", \"element_forces\", \"gather\", \"gravity\", {systems}\"integrate\", \"observe\"]"
-            );
+            let parameters = format!("parameters={{{systems}}}");
             let registry = Registry::default().with(wind::system()).with(plane::system());
             let options = Options { backend: BackendChoice::Cpu, precision: Precision::F32, ..Options::default() };
-            let mut simulation = Simulation::with_systems(&scene(&[&cells, &schedule]), &options, &registry).unwrap();
+            let mut simulation = Simulation::with_systems(&scene(&[&cells, &parameters]), &options, &registry).unwrap();
             let told = simulation.explain_on_gpu(&registry).unwrap();
             let [body] = &told.dispatched[..] else { panic!("{} bodies", told.dispatched.len()) };
             println!("{}; {}", body.because, body.interior_because);
             (body.many_steps, body.interior)
         };
-        let (alone, with) = (told(""), told("\"wind\", "));
+        let (alone, with) = (told(""), told("\"wind\": (acceleration: (0.5, 0, 0), height: 0.1)"));
         assert_eq!(alone, with, "{cells} cells: many steps in a dispatch, nodes inside patches");
         assert!(alone.0 == small && (small || alone.1 > 0), "{alone:?}");
     }

@@ -13,7 +13,6 @@ const SCENE: &str = r#"(
     bodies: {"cube": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4)), material: "tissue")},
     materials: {"tissue": (density: 1000, neo_hookean: Young(young: 2e4, poisson: 0.3), damping: 60)},
     loads: [Gravity(acceleration: (0, 0, -9.81))],
-    schedule: ["element_forces", "gather", "gravity", "bond", "integrate", "observe"],
     parameters: {"bond": (height: 0.0999, stiffness: 1e5, slip: 0.01)},
     output: (energies_every: 0.1),
 )"#;

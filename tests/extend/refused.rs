@@ -43,7 +43,6 @@ fn begun_on(backend: BackendChoice, system: System, rows: &str) -> Result<Simula
     duration: 1,
     bodies: {{"cube": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2)), material: "tissue")}},
     materials: {{"tissue": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.3))}},
-    schedule: ["boundary", "element_forces", "gather", "hold", "integrate", "observe"],
     parameters: {{{rows}}},
 )"#
     );
@@ -72,7 +71,7 @@ fn parameters_that_a_shader_cannot_have() {
     let wrong = begun(system, r#""hold": (rows: [0])"#).err().unwrap();
     let said = "the parameters of `hold` do not fit: `rows`: a list of any length is nothing that a shader can have";
     assert!(wrong.contains(said), "{wrong}");
-    assert!(wrong.contains("hold.ron:6"), "{wrong}");
+    assert!(wrong.contains("hold.ron:5"), "{wrong}");
 }
 
 #[test]

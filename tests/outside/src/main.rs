@@ -22,7 +22,6 @@ const SCENE: &str = r#"(
     bodies: {"cube": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (5, 5, 5)), material: "soft")},
     materials: {"soft": (density: 1000, neo_hookean: Young(young: 3000, poisson: 0.45))},
     constraints: [Fixed(on: Set("z0"))],
-    schedule: ["boundary", "element_forces", "gather", "hook", "integrate", "observe"],
     parameters: {"hook": (force: (0, 0, 0.05))},
 )"#;
 

@@ -44,11 +44,7 @@ impl Load {
         match self {
             Self::None => String::new(),
             Self::Gravity => format!("loads: [Gravity(acceleration: (0, 0, {ACCELERATION}))]"),
-            // a program's own system runs where the schedule names it
-            Self::Rust => format!(
-                "schedule: [\"boundary\", \"element_forces\", \"gather\", \"weight\", \"integrate\", \"observe\"],
-                 parameters: {{\"weight\": (acceleration: {ACCELERATION})}}"
-            ),
+            Self::Rust => format!("parameters: {{\"weight\": (acceleration: {ACCELERATION})}}"),
             Self::Wgsl => format!(
                 "systems: {{\"weight\": (file: \"{}\", parameters: {{\"acceleration\": {ACCELERATION}}})}}",
                 TEXT.0
