@@ -82,7 +82,8 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
         if turned >= TURNED_AWAY {
             continue;
         }
-        facing.way = (abs(facing.gap) + ALIKE * surface.edge) * (1.0 + TURNED_AWAY + turned);
+        let inside = max(-facing.gap, 0.0) + ALIKE * surface.edge;
+        facing.way = max(facing.gap, 0.0) + inside * (1.0 + TURNED_AWAY + turned);
         if !both.first.there || facing.way < both.first.way {
             if both.first.there && is_corner(facing, both.first, point) {
                 both.second = both.first;

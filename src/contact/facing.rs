@@ -233,6 +233,13 @@ impl Surfaces {
     }
 }
 
+/// How little a face is in a point's way, whose normal's cosine with the point's own is `turned`. Outside the nearest is
+/// most in its way, or with a thickness it would come nearer to that one for the sake of another. Inside, and at an
+/// edge, where the walls beside a face are as near as itself, it is the one that it faces more.
+fn in_way(facing: &Facing, turned: f64, edge: f64) -> f64 {
+    facing.gap.max(0.0) + ((-facing.gap).max(0.0) + ALIKE * edge) * (1.0 + TURNED_AWAY + turned)
+}
+
 /// The faces that are in a point's way, of those seen so far.
 struct Way<'a> {
     surfaces: &'a Surfaces,
@@ -270,8 +277,7 @@ impl Way<'_> {
             return;
         }
         let is_corner = |first: &Facing, second: &Facing| surfaces.is_corner(now.places, point, [first, second], edge);
-        // at an edge the walls beside a face are as near as itself
-        let way = (facing.gap.abs() + ALIKE * edge) * (1.0 + TURNED_AWAY + turned);
+        let way = in_way(&facing, turned, edge);
         let least = self.faced.map(|of| of.map_or(f64::INFINITY, |(_, way)| way));
         if way < least[0] {
             if self.faced[0].is_some_and(|(other, _)| is_corner(&facing, &other)) {

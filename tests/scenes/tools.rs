@@ -32,7 +32,7 @@ fn agrees_with_the_layer_formula(cases: [(f64, &str, f64); 2]) {
         let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
         let mut simulation = Simulation::new(&scene("indentation", &sets), &reference()).unwrap();
         simulation.finish().unwrap();
-        let force = simulation.tool("ball").unwrap().force;
+        let force = simulation.tool("indenter.ball").unwrap().force;
         assert!(near(force.z, on_the_ball(young), bound), "{cells} of {young} Pa: {force}");
         // the planes of symmetry cut it into equal halves
         assert!((force.x - force.y).abs() < 1e-6 * force.z, "{force}");
@@ -63,25 +63,25 @@ fn the_probe_feels_depth_and_friction_and_leaves_nothing_behind() {
 #[test]
 fn the_instrument_goes_through_its_trocar_and_strokes_tissue() {
     let file = scene("trocar", &["bodies.tissue.mesh.cells=(20, 10, 4)"]);
-    let way = sinew::assembly::motion(&file.scene.tools["instrument"]);
+    let way = sinew::assembly::motion(&file.scene.tools["instrument.tip"]);
     let pivot = way.pivot.unwrap();
     let mut simulation = Simulation::new(&file, &reference()).unwrap();
     let mut deepest = 0.0_f64;
     for time in [0.12, 0.26, 0.39] {
         simulation.advance_to(time).unwrap();
         let pose = way.pose(simulation.time(), |_| 0.0);
-        let reading = simulation.tool("instrument").unwrap();
+        let reading = simulation.tool("instrument.tip").unwrap();
         assert!(reading.place.distance(pose.at) < 1e-15, "{reading:?} {pose:?}");
         let off = pose.inverse(pivot);
         assert!(off.truncate().length() < 1e-15 && off.z > 0.0, "the pivot is at {off} of the shaft");
         deepest = deepest.max(reading.penetration);
         assert!(reading.force.z > 0.01 && reading.nodes > 3, "{reading:?}");
     }
-    let drawn = simulation.tool("instrument").unwrap();
+    let drawn = simulation.tool("instrument.tip").unwrap();
     // a friction of 0.1, less or more by how few nodes lie before and behind the tip
     assert!(drawn.force.x < -0.05 * drawn.force.z && deepest < 1e-9, "{drawn:?} {deepest}");
     simulation.finish().unwrap();
-    assert_eq!(simulation.tool("instrument").unwrap().nodes, 0);
+    assert_eq!(simulation.tool("instrument.tip").unwrap().nodes, 0);
 }
 
 #[test]
@@ -89,10 +89,10 @@ fn the_ball_comes_to_rest_on_tissue_and_weighs_on_it() {
     let mut simulation =
         Simulation::new(&scene("ball_on_tissue", &["bodies.tissue.mesh.cells=(18, 12, 4)"]), &reference()).unwrap();
     simulation.advance_to(0.03).unwrap();
-    let falling = simulation.tool("ball").unwrap();
+    let falling = simulation.tool("glass.ball").unwrap();
     assert_eq!(falling.nodes, 0, "6 mm take 35 ms");
     simulation.finish().unwrap();
-    let reading = simulation.tool("ball").unwrap();
+    let reading = simulation.tool("glass.ball").unwrap();
     let free = reading.free.unwrap();
     let weight = free.mass * 9.81;
     assert!(near(reading.force.z, weight, 0.02), "{reading:?}");

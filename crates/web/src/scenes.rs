@@ -35,6 +35,7 @@ pub fn bundle() -> Bundle {
         "meshes/lens_814.msh",
         "meshes/liver.msh",
         "meshes/liver_skin.obj",
+        "tools/ball.ron",
         "tools/forceps.ron",
         "tools/phaco.ron",
         "tools/probe.ron",

@@ -106,6 +106,29 @@ fn a_wall_that_rises_is_another_face_and_one_that_falls_off_is_not() {
     }
 }
 
+/// A floor and a slope beside it, up by 25° or down by 60°, and a point that looks straight down. In front of both it is
+/// kept away from the nearer, as by a thickness; inside both it comes out of the one that it faces more.
+#[test]
+fn outside_of_several_faces_the_nearest_is_in_the_way_and_inside_the_one_that_is_faced() {
+    let floor = [(-3.0, -1.0, 0.0), (0.0, -1.0, 0.0), (0.0, 2.0, 0.0)];
+    for (slope, at, expected) in [
+        (25_f64, (-0.05, 0.1, 0.5), 1),
+        (25.0, (-0.5, 0.1, 0.5), 0),
+        (-60.0, (-0.02, 0.1, -0.1), 0),
+        (-60.0, (0.2, 0.1, -0.4), 1),
+    ] {
+        let (rise, run) = slope.to_radians().sin_cos();
+        let slope = [(0.0, -1.0, 0.0), (3.0 * run, -1.0, 3.0 * rise), (0.0, 2.0, 0.0)];
+        let at = DVec3::from(at);
+        let face = [at, at + DVec3::Y, at + DVec3::X];
+        let places: Vec<DVec3> = floor.into_iter().chain(slope).map(DVec3::from).chain(face).collect();
+        let surfaces = Surfaces::new(9, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]], vec![0, 0, 1], vec![0.5; 3]);
+        let point = Point { triangle: Some(2), ..Point::node(1, 6) };
+        let faced = faced(&surfaces, &places, &point, &[0, 1], |_| 1.0);
+        assert_eq!(faced.first.map(|first| first.triangle), Some(expected), "{at}: {faced:?}");
+    }
+}
+
 #[test]
 fn triangles_without_area_are_never_faced() {
     let places: Vec<DVec3> =
