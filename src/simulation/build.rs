@@ -357,8 +357,15 @@ fn keeping(
     world: &mut World,
 ) -> Keeping {
     let custom = || schedule.iter().zip(&plan.systems).filter(|(entry, _)| entry.system.custom);
+    let mut identity = identity(&scene.scene, world);
+    // a schedule that is written out names them
+    let acting = custom().filter(|(_, planned)| !planned.writes.is_empty()).map(|(entry, _)| &*entry.system.name);
+    let acting: Vec<&str> = acting.filter(|_| scene.scene.schedule.is_none()).collect();
+    if !acting.is_empty() {
+        identity.insert("systems of the program".into(), acting.join(", "));
+    }
     Keeping {
-        identity: identity(&scene.scene, world),
+        identity,
         precision,
         written: each_once(custom().flat_map(|(_, planned)| &planned.writes).copied()),
         systems: schedule.iter().filter_map(|entry| Some((entry.system.name.clone(), entry.system.state?))).collect(),

@@ -110,6 +110,33 @@ fn parameters_that_do_not_fit_are_an_error_without_a_schedule_too() {
     assert!(told.contains("error") && told.contains("`nomber`") && told.contains("scene.ron:6"), "{told}");
 }
 
+/// What pushes goes on pushing, or the snapshot is not taken up; what only looks on may be left out.
+#[test]
+fn a_snapshot_knows_which_of_a_programs_systems_act() {
+    fn acts(mut forces: Query<&mut ExternalForce>) {
+        for mut all in &mut forces {
+            let pushed = all.get(2) + 1e-3;
+            all.set(2, pushed);
+        }
+    }
+    fn looks(places: Query<&Displacement>) {
+        assert!(places.iter().next().is_some());
+    }
+    let options = Options { backend: BackendChoice::Cpu, ..Options::default() };
+    let simulation = |registry: &Registry| Simulation::with_systems(&scene(""), &options, registry).unwrap();
+    let pushed = Registry::default().with(System::custom("pushes", Phase::Loads, "pushes", acts));
+    let mut began = simulation(&pushed);
+    began.advance(3).unwrap();
+    let kept = began.snapshot().unwrap();
+    let without = simulation(&Registry::default()).restore(&kept);
+    assert!(without.unwrap_err().to_string().contains("systems of the program"));
+    let watched = pushed.with(System::custom("looks", Phase::Observe, "looks on", looks));
+    let mut gone_on = simulation(&watched);
+    gone_on.restore(&kept).unwrap();
+    [&mut began, &mut gone_on].map(|simulation| simulation.advance(3).unwrap());
+    assert_eq!(began.displacements("cube").unwrap(), gone_on.displacements("cube").unwrap());
+}
+
 /// Whether a body is warned of that flies off: not where a program's system may hold it.
 #[test]
 fn what_a_programs_system_may_hold_is_not_warned_of() {
