@@ -119,9 +119,13 @@ fn the_needle_slides_on_the_surface_and_does_not_pierce_it() {
     let ripple = all.iter().map(|force| (force.z - mean.z).abs()).fold(0.0, f64::max) / mean.z;
     let ratio = -mean.x / mean.z;
     println!("mean {mean} N, ripple {ripple}, ratio {ratio}");
-    // friction of 0.1, and the wall in front of a tip that is as deep as it is thick
-    assert!(ratio > 0.1 && ratio < 0.7 && ripple < 0.5, "{mean} {ripple} {ratio}");
-    assert!(mean.y.abs() < 1e-3 * mean.z, "{mean}");
+    // friction of 0.1, and the wall in front of a tip that is as deep as it is thick: a mesh of cells two thirds as
+    // large has 2.03 mN and .475, half of the step 2.03 mN and .450, this one 2.00 mN and .453
+    assert!(near(mean.z, 2.02e-3, 0.02) && near(ratio, 0.464, 0.04), "{mean} {ratio}");
+    // the tip rests on few nodes: .30 here, .33 with half of the step, and not less on the finer mesh
+    assert!(ripple < 0.35, "{ripple}");
+    // the plane of its way is one of symmetry
+    assert!(mean.y.abs() < 1e-9 * mean.z, "{mean}");
     simulation.finish().unwrap();
     assert_eq!(simulation.tool("needle").unwrap().nodes, 0);
     let left = simulation.displacements("tissue").unwrap().iter().map(|u| u.length()).fold(0.0, f64::max);
