@@ -233,8 +233,8 @@ impl Surfaces {
     }
 }
 
-/// How little a face is in a point's way, whose normal's cosine with the point's own is `turned`. Outside the nearest is
-/// most in its way, or with a thickness it would come nearer to that one for the sake of another. Inside, and at an
+/// How little a face is in a point's way, whose normal's cosine with the point's own is `turned`. Outside the nearest
+/// is most in its way, or with a thickness it would come nearer to that one for the sake of another. Inside, and at an
 /// edge, where the walls beside a face are as near as itself, it is the one that it faces more.
 fn in_way(facing: &Facing, turned: f64, edge: f64) -> f64 {
     facing.gap.max(0.0) + ((-facing.gap).max(0.0) + ALIKE * edge) * (1.0 + TURNED_AWAY + turned)

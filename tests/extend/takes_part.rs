@@ -133,7 +133,9 @@ fn a_snapshot_knows_which_of_a_programs_systems_act() {
     let watched = pushed.with(System::custom("looks", Phase::Observe, "looks on", looks));
     let mut gone_on = simulation(&watched);
     gone_on.restore(&kept).unwrap();
-    [&mut began, &mut gone_on].map(|simulation| simulation.advance(3).unwrap());
+    for simulation in [&mut began, &mut gone_on] {
+        simulation.advance(3).unwrap();
+    }
     assert_eq!(began.displacements("cube").unwrap(), gone_on.displacements("cube").unwrap());
 }
 

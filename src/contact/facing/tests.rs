@@ -106,8 +106,8 @@ fn a_wall_that_rises_is_another_face_and_one_that_falls_off_is_not() {
     }
 }
 
-/// A floor and a slope beside it, up by 25° or down by 60°, and a point that looks straight down. In front of both it is
-/// kept away from the nearer, as by a thickness; inside both it comes out of the one that it faces more.
+/// A floor and a slope beside it, up by 25° or down by 60°, and a point that looks straight down. In front of both it
+/// is kept away from the nearer, as by a thickness; inside both it comes out of the one that it faces more.
 #[test]
 fn outside_of_several_faces_the_nearest_is_in_the_way_and_inside_the_one_that_is_faced() {
     let floor = [(-3.0, -1.0, 0.0), (0.0, -1.0, 0.0), (0.0, 2.0, 0.0)];
