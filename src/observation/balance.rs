@@ -97,8 +97,8 @@ fn held_by(seen: &Sample, world: &World) -> Held {
     held
 }
 
-/// What elements hold as the balance of energy counts it (J), of viscous ones what remains in the long term, in the
-/// middle of the last step.
+/// What elements hold as the balance of energy counts it (J), of viscous ones what remains in the long term, where
+/// velocities are: in the middle of the last step, of implicit ones at its end.
 ///
 /// # Errors
 /// What the GPU says.

@@ -123,12 +123,12 @@ fn sample_nodes(sample: &mut Sample, world: &mut World) {
 fn sample_elements(sample: &mut Sample, world: &mut World) -> Result<(), Error> {
     let blocks: Vec<(Entity, Entity)> =
         world.query::<(Entity, &Block)>().iter(world).map(|(entity, block)| (entity, block.body)).collect();
-    let mut middle: Option<(Entity, Displacement)> = None;
+    let mut there: Option<(Entity, Displacement)> = None;
     for (entity, body) in blocks {
-        if middle.as_ref().is_none_or(|(of, _)| *of != body) {
-            middle = where_velocities_are(world, body).map(|displacement| (body, displacement));
+        if there.as_ref().is_none_or(|(of, _)| *of != body) {
+            there = where_velocities_are(world, body).map(|displacement| (body, displacement));
         }
-        let Some((_, displacement)) = &middle else {
+        let Some((_, displacement)) = &there else {
             return Err(missing("a column of a body"));
         };
         let sums = match displacement.0 {

@@ -72,7 +72,8 @@ impl SerializeStruct for OfStruct {
         if bytes.is_empty() {
             return Ok(Parameters::default());
         }
-        let of = format!("{}{}", name[..1].to_uppercase(), &name[1..]);
+        let mut letters = name.chars();
+        let of: String = letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect();
         let uniform = format!("@group(0) @binding(0) var<uniform> {name}: {of};");
         Ok(Parameters { declared: format!("struct {of} {{\n{members}}}\n{uniform}\n"), bytes })
     }

@@ -9,7 +9,11 @@ use bevy_ecs::prelude::*;
 /// Adds up the work against internal forces alone, for the guard of energy.
 pub(super) fn add_internal_work(world: &mut World, axes: &Axes, before: &ForcesBefore, place: &Place<'_>) {
     for (body, range) in axes.each() {
-        let Some(internal) = world.get::<InternalForce>(body) else { continue };
+        // where nobody guards it, it is not there
+        let (Some(internal), true) = (world.get::<InternalForce>(body), world.get::<InternalWork>(body).is_some())
+        else {
+            continue;
+        };
         let of_axis =
             |axis: usize| 0.5 * (before.internal.get(axis) + internal.get(axis - range.start)) * place.moved(axis);
         let work = range.clone().map(of_axis).sum();
