@@ -6,7 +6,8 @@ struct StepRecords {
 }
 @group(0) @binding(0) var<storage, read> step_records: StepRecords;
 
-// sum_patch of patches.wgsl, for each block, and the functions of systems of nodes, in their order: linked.
+// sum_patch of patches.wgsl, for each block, and the functions of systems of nodes, in their order: linked by
+// `Pass::of` in src/backend/node_stage/pass.rs.
 fn sum_all(number: u32, local: u32, kept: u32) {}
 fn call_all(node: u32) {}
 fn finish_all(local: u32, node: u32) {}

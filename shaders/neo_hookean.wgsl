@@ -1,4 +1,4 @@
-// The neo-Hookean law; twin of src/materials/neo_hookean.rs.
+// The neo-Hookean law; twin of src/materials/neo_hookean.rs. By way of S; `direct_stress` there is the same at once.
 struct NeoHookean {
     shear: f32, // Pa
     bulk: f32, // Pa

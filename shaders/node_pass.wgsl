@@ -1,6 +1,7 @@
 // The kernel of systems that work node by node. INVOCATIONS is generated.
 
-// The functions of those systems, in their order: linked.
+// The functions of those systems, in their order: linked by `Pass::of` in src/backend/node_stage/pass.rs
+// (`sinew explain SCENE --backend gpu --kernel LABEL` shows what is called).
 fn call_all(node: u32) {}
 fn finish_all(local: u32, node: u32) {}
 

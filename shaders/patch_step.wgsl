@@ -6,7 +6,7 @@
 // the displacements of its own nodes only, and no stage reads those of other nodes than its own. Within a workgroup all
 // displacements have been read before the first barrier of sum_patch.
 
-// The functions of those stages, in their order: linked.
+// The functions of those stages, in their order: linked by `Pass::of` in src/backend/node_stage/pass.rs.
 fn call_all(node: u32) {}
 fn finish_all(local: u32, node: u32) {}
 

@@ -55,6 +55,8 @@ pub(super) struct BlockParts {
     removal: Option<&'static mut RemovalStep>,
 }
 
+/// The system by itself: where nothing follows for nodes in its pass (`fuse: false`, implicit steps, Newton's method).
+/// Else `patch_pass.rs` calls [`BlockPartsItem::run`].
 fn element_forces(
     cpu: Res<Cpu>,
     clock: Res<Clock>,

@@ -4,7 +4,7 @@ mod kernels;
 mod solved;
 mod work;
 
-use super::node_slices::{BodyColumns, elements_stay};
+use super::node_slices::{SlicedColumns, elements_stay};
 use super::repeat::Repeat;
 use super::system::{Phase, System};
 use crate::backend::cpu::IntegrationCoefficients;
@@ -73,7 +73,7 @@ const WENT: f64 = 2.0;
 #[derive(QueryData)]
 #[query_data(mutable)]
 struct TiedColumns {
-    nodes: BodyColumns,
+    nodes: SlicedColumns,
     state: Option<&'static mut TieState>,
 }
 

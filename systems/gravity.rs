@@ -1,9 +1,8 @@
 //! `gravity`: mass times acceleration on every node. `shaders/gravity.wgsl` is its twin.
 
-use super::nodal_force::with_factors;
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
-use super::stage::Stage;
+use super::stage::{Stage, with_factors};
 use super::system::{Phase, System};
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::components::*;

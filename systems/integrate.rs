@@ -60,6 +60,7 @@ impl NodeSystem for Body {
     }
 
     fn act<T: SimdScalar>(&self, clock: &Clock, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        // the formula above a register full at a time (`register` in `node_kernel.rs`); fixed axes keep their step of 0
         if let Some(row) = move_nodes(cpu, nodes, &IntegrationCoefficients::of(clock)) {
             nodes.non_finite.fetch_min(row, Ordering::Relaxed);
         }

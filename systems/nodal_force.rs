@@ -4,12 +4,11 @@ use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
 use super::rows::Rows;
-use super::stage::Stage;
+use super::stage::{Stage, with_factors};
 use super::system::{Phase, System};
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::components::*;
 use crate::math::SimdScalar;
-use crate::shader;
 use bevy_ecs::prelude::*;
 use serde::Serialize;
 use std::sync::Arc;
@@ -71,14 +70,4 @@ impl NodeSystem for NodalForce {
             }
         }
     }
-}
-
-/// Adds what a load is multiplied with at each of its rows along each axis; empty: 1 at all.
-pub(super) fn with_factors(stage: Stage, factors: &[[f64; 3]]) -> Stage {
-    if factors.is_empty() {
-        let text = "fn factor_of(i: u32) -> vec3<f32> {\n    return vec3<f32>(1.0);\n}\n";
-        return stage.text("generated: the same load on all nodes", text);
-    }
-    let factors: Vec<f32> = factors.iter().flatten().map(|&factor| factor as f32).collect();
-    stage.fragment(shader!("load_factor")).reals("factors", &factors)
 }

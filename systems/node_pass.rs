@@ -202,20 +202,10 @@ impl NodePass {
     }
 }
 
-/// Does what bound systems do to some rows, one after the other.
+/// Does what bound systems do to some rows, one after the other: each is `NodeSystem::act` in its file.
 pub(super) fn act<T: OfRun>(systems: &[BoundSystem<'_>], cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
     for system in systems {
         T::act(system.on_rows(), cpu, nodes);
-    }
-}
-
-/// The same where the forces of elements are summed already.
-pub(super) fn act_after_gather<T: OfRun>(systems: &[BoundSystem<'_>], cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
-    if let Some(external) = nodes.external.as_deref_mut() {
-        external.fill(T::default());
-    }
-    for system in systems.iter().map(BoundSystem::on_rows).filter(|system| !system.sums_forces()) {
-        T::act(system, cpu, nodes);
     }
 }
 
@@ -224,13 +214,12 @@ pub(crate) fn node_pass(pass: NodePass, world: &mut World) -> HostSystem {
     pass_over(pass, |_| None, world)
 }
 
-/// The same over those nodes that have not moved with a patch: those of surfaces inside patches, and those inside none.
+/// The same over those nodes that have waited: those of surfaces.
 pub(crate) fn shared_pass(pass: NodePass, world: &mut World) -> HostSystem {
     pass_over(pass, |corners| corners, world)
 }
 
-/// Node systems as one pass over all nodes, or over those that have not moved with a patch. Bodies do not wait for each
-/// other.
+/// Node systems as one pass over all nodes, or over those that have waited. Bodies do not wait for each other.
 fn pass_over(pass: NodePass, moved: fn(Option<&Corners>) -> Option<&Corners>, world: &mut World) -> HostSystem {
     type Bodies<'w, 's> = Query<'w, 's, (BodyColumns, Option<&'static ElementForce>, Option<&'static Corners>)>;
     let parameters = (
@@ -279,14 +268,14 @@ fn move_others<T: OfRun>(
         columns.take(rows.len())
     }));
     if let Some(moved) = moved {
-        columns.take(moved.first_interface - columns.first);
+        columns.take(moved.first_waiting - columns.first);
     }
     let deferred = deferred.iter_mut().map(|rows| rows.take(rows.rows()));
     move_rows(&step.cpu, observed, deferred.chain(columns.tasks(ROWS_A_TASK)), &[systems]);
     body.note_non_finite(non_finite, &step.clock);
 }
 
-/// Takes nodes through systems, a task's rows at a time; without `observed` their forces go nowhere else.
+/// Takes nodes through systems, `gather` first, a task's rows at a time; without `observed` their forces go nowhere else.
 pub(super) fn move_rows<'a, T: OfRun>(
     cpu: &Cpu,
     observed: bool,

@@ -11,7 +11,7 @@ use glam::DVec3;
 /// What is known of the nodes of a body.
 #[derive(QueryData)]
 #[query_data(mutable)]
-pub(super) struct BodyColumns {
+pub(super) struct SlicedColumns {
     pub rest: &'static RestPosition,
     pub mass: &'static Mass,
     pub inertial: Option<&'static InertialMass>,
@@ -40,7 +40,7 @@ pub(super) struct NodeSlices<'a, T> {
 
 impl<'a, T: Scalar> NodeSlices<'a, T> {
     /// Of columns in that precision.
-    pub fn of(columns: BodyColumnsItem<'a, '_>) -> Self {
+    pub fn of(columns: SlicedColumnsItem<'a, '_>) -> Self {
         let mass = columns.inertial.map_or(&columns.mass.0, |mass| &mass.0);
         Self {
             rest: &columns.rest.0,

@@ -2,7 +2,7 @@
 //! move while they are in the core's cache, those that patches share when all patches are done.
 
 use super::element_forces::{BlockParts, BlockPartsItem, Precise};
-use super::node_pass::{BodyColumns, BodyColumnsItem, InStep, NodePass, act, act_after_gather, move_rows};
+use super::node_pass::{BodyColumns, BodyColumnsItem, InStep, NodePass, act, move_rows};
 use super::node_system::{BoundSystem, Callers, OfRun};
 use super::runs_on::HostSystem;
 use crate::backend::cpu::{Cpu, NodeColumns, PatchInterior, ROWS_A_TASK, Undeclared};
@@ -15,9 +15,9 @@ use std::sync::atomic::AtomicU32;
 
 type Bodies<'w, 's> = Query<'w, 's, (BodyColumns, &'static Corners, &'static mut ElementForce)>;
 
-/// `element_forces` and a pass over the nodes as one. Nodes inside patches go through the systems of another pass, too,
-/// which the others come to later; in a step in which all sleep that act on surfaces in between, all nodes do. Bodies
-/// do not wait for each other: threads take patches of any.
+/// `element_forces` and a pass over the nodes as one. Nodes go through the systems of another pass, too, to which those
+/// of surfaces come later; in a step in which all sleep that act on surfaces in between, all nodes do. Bodies do not
+/// wait for each other: threads take patches of any.
 pub(crate) fn patch_pass(pass: NodePass, ahead: NodePass, world: &mut World) -> HostSystem {
     let ahead = ahead.after(&pass);
     let parameters = (
@@ -51,7 +51,7 @@ pub(crate) fn patch_pass(pass: NodePass, ahead: NodePass, world: &mut World) -> 
                             clock: &step.clock,
                             observed: step.is_observed(),
                             to_come: !ahead.is_empty() && !step.surfaces_sleep(),
-                            first_interface: corners.first_interface,
+                            corners,
                             systems: &pass.bind(&callers, &step, body, arena),
                             ahead: &ahead.bind(&callers, &step, body, arena),
                             undeclared: &undeclared,
@@ -75,14 +75,13 @@ struct StepOfBody<'a> {
     cpu: &'a Cpu,
     arena: &'a Bump,
     clock: &'a Clock,
-    /// Whether somebody may look at forces after the pass; and whether those on nodes outside patches, and on nodes of
-    /// surfaces inside them, are used later.
+    /// Whether somebody may look at forces after the pass; and whether those on nodes of surfaces are used later.
     observed: bool,
     to_come: bool,
-    first_interface: usize,
+    corners: &'a Corners,
     /// What is done to nodes; to those inside a patch as soon as that has summed their forces.
     systems: &'a [BoundSystem<'a>],
-    /// What is done to those inside a patch afterwards, and to others then or later.
+    /// What is done to them afterwards; to those of surfaces then or later.
     ahead: &'a [BoundSystem<'a>],
     undeclared: &'a Undeclared,
 }
@@ -112,7 +111,7 @@ impl StepOfBody<'_> {
         let mut found: Vec<Vec<usize>> = Vec::new();
         for (place, (block, nodes)) in blocks.iter_mut().zip(interior).enumerate() {
             let interior = PatchInterior { nodes, then: &then, observed: self.observed };
-            let displacement = (&*shared.u, self.first_interface);
+            let displacement = (&*shared.u, self.corners.first_interface);
             let patches = block.run(cpu, displacement, force.slice_mut(), Some(interior), false);
             if !patches.is_empty() {
                 found.resize(place, Vec::new());
@@ -132,14 +131,27 @@ impl StepOfBody<'_> {
                 deferred.push(left.deferred);
             }
         }
-        shared.take(self.first_interface - shared.first);
+        shared.take(self.corners.first_interface - shared.first);
+        let never_wait = shared.take(self.corners.first_waiting - shared.first);
+        let at_once = free.into_iter().chain(never_wait.tasks(ROWS_A_TASK));
         let others = deferred.into_iter().chain(shared.tasks(ROWS_A_TASK));
-        move_rows(cpu, self.observed, free.into_iter(), &[systems, ahead]);
+        move_rows(cpu, self.observed, at_once, &[systems, ahead]);
         match to_come {
             true => move_rows(cpu, true, others, &[systems]),
             false => move_rows(cpu, self.observed, others, &[systems, ahead]),
         }
         body.note_non_finite(non_finite, clock);
+    }
+}
+
+/// Does what bound systems do to nodes inside a patch, whose forces are summed: `NodeSystem::act` of each but `gather`,
+/// loads and then `integrate`.
+fn act_after_gather<T: OfRun>(systems: &[BoundSystem<'_>], cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+    if let Some(external) = nodes.external.as_deref_mut() {
+        external.fill(T::default());
+    }
+    for system in systems.iter().map(BoundSystem::on_rows).filter(|system| !system.sums_forces()) {
+        T::act(system, cpu, nodes);
     }
 }
 

@@ -5,6 +5,7 @@ use super::rows::Rows;
 use crate::backend::Buffers;
 use crate::backend::kernel::{Fragment, Layout, Uniform};
 use crate::backend::node_stage::NodeStage;
+use crate::shader;
 use bevy_ecs::prelude::*;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -161,4 +162,14 @@ impl Stage {
             None => stage,
         }
     }
+}
+
+/// Adds what a load is multiplied with at each of its rows along each axis; empty: 1 at all.
+pub(super) fn with_factors(stage: Stage, factors: &[[f64; 3]]) -> Stage {
+    if factors.is_empty() {
+        let text = "fn factor_of(i: u32) -> vec3<f32> {\n    return vec3<f32>(1.0);\n}\n";
+        return stage.text("generated: the same load on all nodes", text);
+    }
+    let factors: Vec<f32> = factors.iter().flatten().map(|&factor| factor as f32).collect();
+    stage.fragment(shader!("load_factor")).reals("factors", &factors)
 }

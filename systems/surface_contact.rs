@@ -14,7 +14,7 @@ mod solved;
 mod survey;
 mod words;
 
-use super::node_slices::BodyColumns;
+use super::node_slices::SlicedColumns;
 use super::repeat::Repeat;
 use super::system::{Phase, System};
 use crate::backend::cpu::Cpu;
@@ -199,7 +199,7 @@ pub struct Figures {
 #[derive(QueryData)]
 #[query_data(mutable)]
 struct MeetingColumns {
-    nodes: BodyColumns,
+    nodes: SlicedColumns,
     force: &'static mut ContactForce,
     touch: &'static mut SurfaceTouch,
     face_touch: Option<&'static mut FaceTouch>,

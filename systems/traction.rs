@@ -1,11 +1,10 @@
 //! `traction`: dead loads on the surface. `shaders/traction.wgsl` is its twin.
 
-use super::nodal_force::with_factors;
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
 use super::rows::Rows;
-use super::stage::Stage;
+use super::stage::{Stage, with_factors};
 use super::system::{Phase, System};
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::face_kernel::{FaceLoad, face_loads};

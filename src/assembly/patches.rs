@@ -1,5 +1,6 @@
 //! Cutting blocks into patches, and where element forces stand.
 
+use crate::backend::cpu::ROWS_A_CHUNK;
 use crate::components::*;
 use crate::elements::node_count;
 use crate::math::LANES;
@@ -84,6 +85,7 @@ pub fn insert_forces(scheme: Scheme, body: Entity, world: &mut World) {
             find_inside(&mut patches, &mut corners, &apart);
         }
     }
+    corners.first_waiting = first_waiting(&corners, count, &apart);
     world.entity_mut(body).insert((corners, ElementForce(Reals::zeros(precision, length))));
 }
 
@@ -98,7 +100,7 @@ fn corners(nodes: usize, places: &[(u32, u32)], stride: usize) -> Corners {
         corners[next[node as usize] as usize] = place;
         next[node as usize] += 1;
     }
-    Corners { starts, corners, stride, first_interface: 0, deferred: Vec::new() }
+    Corners { starts, corners, stride, first_interface: 0, deferred: Vec::new(), first_waiting: 0 }
 }
 
 /// Counts the nodes of each patch that nobody else has and that follow those of the patches before: first those that
@@ -120,6 +122,17 @@ fn find_inside(patches: &mut Patches, corners: &mut Corners, apart: &[u32]) {
         next += free + deferred;
     }
     corners.first_interface = next;
+}
+
+/// The first of so many rows outside patches that is kept apart, or a few rows before: with those that are not, whole
+/// chunks are moved, so that sums over chunks are the same wherever it is.
+fn first_waiting(corners: &Corners, nodes: usize, apart: &[u32]) -> usize {
+    let first = corners.first_interface;
+    let next = apart.partition_point(|&row| (row as usize) < first);
+    match apart.get(next) {
+        Some(&waiting) => first + (waiting as usize - first) / ROWS_A_CHUNK * ROWS_A_CHUNK,
+        None => nodes,
+    }
 }
 
 #[cfg(test)]

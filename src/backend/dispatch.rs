@@ -4,7 +4,7 @@
 
 use super::Buffers;
 use super::kernel::Kernel;
-use super::node_stage::{NodeStage, rows_of};
+use super::node_stage::{self, NodeStage, rows_of};
 use super::{many_steps, patch_step};
 use crate::components::{Authoring, Block, Label};
 use bevy_ecs::prelude::*;
@@ -24,9 +24,26 @@ pub struct Dispatched {
     pub interior: u32,
     /// Why so many.
     pub interior_because: String,
+    /// The kernels of its nodes, pass by pass: who shares them, and why no more do.
+    pub node_kernels: Vec<NodeKernel>,
     /// Invocations of the workgroup that takes all steps; 0 where none does.
     #[serde(skip)]
     workgroup: usize,
+}
+
+/// A kernel of a body's nodes.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct NodeKernel {
+    /// The pass of the plan that it is of.
+    #[serde(skip)]
+    pass: usize,
+    /// How many stages are in it.
+    #[serde(skip)]
+    stages: usize,
+    /// The systems that they are of.
+    pub systems: Vec<String>,
+    /// Why the next one is in another kernel; empty behind the last of a pass.
+    pub because: String,
 }
 
 /// What bodies are taken through: the kernels of element forces, and what the pass of the nodes that follows does.
@@ -70,6 +87,7 @@ pub fn pass_by_pass(because: &str, interior_because: &str, world: &mut World) ->
         because: because.to_owned(),
         interior: 0,
         interior_because: interior_because.to_owned(),
+        node_kernels: Vec::new(),
         workgroup: 0,
     };
     let mut bodies: Vec<Dispatched> = query.iter(world).map(of_body).collect();
@@ -141,4 +159,42 @@ pub fn grouped(
     };
     let left = step.stages.iter().filter_map(left).collect();
     (alone, moving, left)
+}
+
+/// Decides which kernels the nodes of each body have in a pass, whose `stages` are what [`grouped`] leaves: with `fuse`
+/// as few as can be, else one a stage.
+pub fn decide_node_kernels(
+    dispatched: &mut [Dispatched],
+    pass: usize,
+    stages: &[NodeStage],
+    fuse: bool,
+    buffers: &mut dyn Buffers,
+) {
+    for of_body in node_stage::by_body(stages) {
+        let Some(body) = dispatched.iter_mut().find(|body| body.entity == of_body[0].body()) else { continue };
+        let mut rest = of_body.as_slice();
+        for node_stage::Shared { stages, because } in node_stage::split(&of_body, fuse, buffers) {
+            let (first, others) = rest.split_at(stages);
+            let mut systems: Vec<String> = first.iter().map(|stage| stage.system().to_owned()).collect();
+            systems.dedup();
+            body.node_kernels.push(NodeKernel { pass, stages, systems, because });
+            rest = others;
+        }
+    }
+}
+
+/// The kernels of nodes in a pass, as it was decided.
+pub fn node_kernels(
+    dispatched: &[Dispatched],
+    pass: usize,
+    stages: &[NodeStage],
+    buffers: &mut dyn Buffers,
+) -> Vec<Kernel> {
+    let mut kernels = Vec::new();
+    for of_body in node_stage::by_body(stages) {
+        let body = dispatched.iter().find(|body| body.entity == of_body[0].body());
+        let of_pass = body.into_iter().flat_map(|body| &body.node_kernels).filter(|kernel| kernel.pass == pass);
+        kernels.extend(node_stage::kernels_of(&of_body, of_pass.map(|kernel| kernel.stages), buffers));
+    }
+    kernels
 }

@@ -11,7 +11,7 @@ use crate::components::{Column, Displacement, ElementForce, Mass};
 use crate::shader;
 use bevy_ecs::prelude::*;
 pub use frames::node_kernels;
-pub(super) use frames::{Frame, MOST_SHARED, many_steps, patch_step, together};
+pub(super) use frames::{Frame, MOST_SHARED, Shared, by_body, kernels_of, many_steps, patch_step, split, together};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
@@ -159,6 +159,11 @@ impl NodeStage {
         self.body
     }
 
+    /// The system that it is of.
+    pub fn system(&self) -> &str {
+        &self.system
+    }
+
     /// Calls `finish(place in the workgroup, node)` afterwards, in all invocations.
     pub fn finish(mut self, finish: &'static str) -> Self {
         self.finish = Some(finish);
@@ -243,8 +248,8 @@ pub fn rows_of(body: Entity, world: &World) -> u32 {
 /// The rows of a kernel of nodes: where they end, and where they begin.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-struct NodePass {
+struct PassRows {
     count: u32,
     first: u32,
 }
-uniform!(NodePass { count, first });
+uniform!(PassRows { count, first });

@@ -113,6 +113,8 @@ pub struct Corners {
     pub first_interface: usize,
     /// Rows before that which may have to [wait](super::Patches::deferred), patch by patch.
     pub deferred: Vec<Range<usize>>,
+    /// The first of the others that may have to wait, or rows that are done in one go with it.
+    pub first_waiting: usize,
 }
 
 /// How the author numbers and orders what the engine has renumbered.

@@ -179,6 +179,9 @@ pub struct KernelInUse {
     pub fragments: Vec<Piece>,
     /// Lines of all pieces.
     pub lines: usize,
+    /// Their text, and which functions of them call which.
+    #[serde(skip)]
+    pub listing: String,
     /// What it binds.
     pub bindings: Vec<Bound>,
 }

@@ -13,6 +13,7 @@ mod contact_springs;
 mod contact_use;
 mod costly;
 mod damped_step;
+mod device_steps;
 pub mod explain;
 mod follow;
 mod frames;

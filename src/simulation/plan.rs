@@ -59,8 +59,8 @@ pub(super) struct Pass {
     pub over: Over,
     /// Places in [`Plan::systems`], in the order in which they run.
     pub systems: Vec<usize>,
-    /// Systems that nodes inside patches go through at once, and the others only in passes to come: what is between
-    /// concerns nodes of surfaces.
+    /// Systems that nodes go through at once, and those of surfaces only in passes to come: what is between concerns
+    /// these.
     pub ahead: Vec<usize>,
     /// How many passes there are between if all of them may sleep, else none: in steps in which they do, all nodes go
     /// through the systems ahead at once, and neither those passes nor the one to come is run.
@@ -86,7 +86,7 @@ pub(super) enum Over {
     /// Patches of elements, whose forces the first system finds; nodes inside a patch go through the other systems
     /// while they are in the core's cache, all others afterwards.
     Elements,
-    /// Nodes that have not moved with a patch.
+    /// Nodes of surfaces, which have waited.
     Shared,
 }
 

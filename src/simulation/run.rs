@@ -1,9 +1,8 @@
-//! Steps.
+//! Steps: how many are taken together, what comes before and after them, and one of them on the host.
 
 use super::build::after_the_step;
 use super::{Job, ScheduledPass, Simulation};
 use crate::backend::cpu::Cpu;
-use crate::backend::device::{Device, bring_to_host, send_to_device};
 use crate::backend::kernel::KernelId;
 use crate::components::*;
 use crate::error::{Error, GpuFailure};
@@ -110,6 +109,49 @@ impl Simulation {
         result.map_err(|error| self.note(error))
     }
 
+    /// Takes steps up to `target`, or as far as the solver goes.
+    pub(super) fn steps_to(&mut self, target: u64) -> Result<(), Error> {
+        while self.step_count() < target {
+            self.begin_step()?;
+            self.begin_frame();
+            let step = self.step_count();
+            let Some(until) = self.solver.until(step, || self.next_of_others()) else { return Ok(()) };
+            if step < until {
+                self.some_steps(target.min(until))?;
+                self.end_batches()?;
+                self.end_frame();
+            }
+            if self.solver.check(&mut self.world, &mut self.entries)? {
+                self.world.resource_mut::<Observer>().last_step = self.step_count();
+                self.observe_in_time()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// What comes before a step, in an order that does not depend on how the program asks for steps: the state is kept,
+    /// inputs and what hands do are taken up, and then the stable step is checked. A second time before the same step
+    /// it does nothing.
+    fn begin_step(&mut self) -> Result<(), Error> {
+        self.before_the_check()?;
+        self.follow()
+    }
+
+    /// All of it but the check.
+    pub(super) fn before_the_check(&mut self) -> Result<(), Error> {
+        self.wait_for_real_time();
+        self.keep_history_if_due()?;
+        self.take_up_inputs()?;
+        self.begin_batches()
+    }
+
+    /// The next step before which somebody beside the solver has something to do: who sets inputs, who keeps states, a
+    /// hand at a port, the clock on the wall, the end of a frame.
+    fn next_of_others(&self) -> u64 {
+        let kept = self.next_kept().max(self.step_count() + 1);
+        self.next_change().min(kept).min(self.ports.next_end()).min(self.next_tick()).min(self.next_frame())
+    }
+
     /// As a part of the run, whose time is taken.
     fn timed<T>(&mut self, task: impl FnOnce(&mut Self) -> T) -> T {
         let started = Instant::now();
@@ -188,7 +230,8 @@ impl Simulation {
         observed.map_err(|error| self.note(error))
     }
 
-    fn evaluate_signals(&mut self, step: u64) {
+    /// Curves of a step, which loads and motions read: of loads their mean over the step.
+    pub(super) fn evaluate_signals(&mut self, step: u64) {
         let clock = *self.world.resource::<Clock>();
         let mut signals = self.world.resource_mut::<Signals>();
         match &clock.relaxation {
@@ -217,116 +260,6 @@ impl Simulation {
         }
         self.world.resource_mut::<Clock>().step = step + 1;
         self.keep_what_is_due()
-    }
-
-    /// As many steps as can be taken before a host system has to run, or one step around it.
-    fn device_steps(&mut self, target: u64) -> Result<(), Error> {
-        let step = self.step_count();
-        let custom_due = |step: u64| {
-            self.entries
-                .iter()
-                .any(|entry| matches!(entry.job, Job::Host { interval, observes: false, .. } if interval.is_due(step)))
-        };
-        let custom_is_due = custom_due(step);
-        let most = self.before_steps()?;
-        if custom_is_due {
-            return self.device_step_around_hosts(step);
-        }
-        let mut until = target.min(self.world.resource::<Observer>().next_due(step));
-        for entry in &self.entries {
-            if let Job::Host { interval, observes: false, .. } = entry.job {
-                until = until.min(interval.next_after(step));
-            }
-        }
-        let kernels: Vec<KernelId> = self.entries.iter().flat_map(ScheduledPass::kernels).copied().collect();
-        let count = (until - step).min(4096).min(most);
-        debug_assert!(count > 0, "no step to take at {step}");
-        self.run_kernels(&kernels, step, count)?;
-        self.world.resource_mut::<Clock>().step = step + count;
-        self.observe_if_due(step + count)
-    }
-
-    /// Does what systems on the device need before steps are submitted; how many there may be at most.
-    fn before_steps(&mut self) -> Result<u64, Error> {
-        let mut most = u64::MAX;
-        for entry in &self.entries {
-            if let Some(before_steps) = entry.before_steps {
-                most = most.min(before_steps(&mut self.world)?.max(1));
-            }
-        }
-        Ok(most)
-    }
-
-    fn observe_if_due(&mut self, step: u64) -> Result<(), Error> {
-        if self.world.resource::<Observer>().next_due(step - 1) != step {
-            return Ok(());
-        }
-        for entry in &mut self.entries {
-            if matches!(entry.job, Job::Host { observes: true, .. }) {
-                entry.run_on_host(step - 1, &mut self.world)?;
-            }
-        }
-        self.keep_what_is_due()
-    }
-
-    fn device_step_around_hosts(&mut self, step: u64) -> Result<(), Error> {
-        let mut waiting: Vec<KernelId> = Vec::new();
-        let mut moved = false;
-        for place in 0..self.entries.len() {
-            let after = after_the_step(self.entries[place].phase);
-            if after && !moved {
-                // the kernels of this step still count from its beginning
-                self.run_kernels(&std::mem::take(&mut waiting), step, 1)?;
-                moved = true;
-            }
-            let entry = &self.entries[place];
-            match &entry.job {
-                Job::Kernels(kernels) if after => self.run_kernels(&kernels.clone(), step, 1)?,
-                Job::Kernels(kernels) => waiting.extend(kernels),
-                Job::Host { observes: true, .. } => {}
-                Job::Host { interval, .. } if !interval.is_due(step) => {}
-                Job::Host { writes, .. } => {
-                    let (reads, writes) = (entry.reads.clone(), writes.clone());
-                    self.run_kernels(&std::mem::take(&mut waiting), step, 1)?;
-                    bring_to_host(&mut self.world, |_, name| reads.contains(&name) || writes.contains(&name))?;
-                    self.world.resource_mut::<Clock>().step = step + u64::from(after);
-                    self.evaluate_signals(step);
-                    self.entries[place].run_on_host(step, &mut self.world)?;
-                    send_to_device(&mut self.world, |_, name| writes.contains(&name))?;
-                    self.world.resource_mut::<Clock>().step = step;
-                }
-            }
-        }
-        self.run_kernels(&waiting, step, 1)?;
-        self.world.resource_mut::<Clock>().step = step + 1;
-        self.observe_if_due(step + 1)
-    }
-
-    /// What comes after an implicit step: kernels of that step, and who observes.
-    pub(super) fn after_a_step_on_device(&mut self, step: u64) -> Result<(), Error> {
-        let after = self.entries.iter().filter(|entry| after_the_step(entry.phase));
-        let kernels: Vec<KernelId> = after.flat_map(ScheduledPass::kernels).copied().collect();
-        self.run_kernels(&kernels, step, 1)?;
-        self.observe_if_due(step + 1)
-    }
-
-    fn run_kernels(&mut self, kernels: &[KernelId], first: u64, count: u64) -> Result<(), Error> {
-        if kernels.is_empty() {
-            return Ok(());
-        }
-        let mut records = Vec::new();
-        let mut clock = *self.world.resource::<Clock>();
-        for step in first..first + count {
-            clock.step = step;
-            self.evaluate_signals(step);
-            records.extend(crate::backend::step::record(
-                &clock,
-                self.world.resource::<Signals>(),
-                step + 1 == first + count,
-            ));
-        }
-        let size = records.len() / count as usize;
-        self.world.resource_mut::<Device>().run(kernels, &records, size, count as u32)
     }
 }
 
@@ -362,7 +295,9 @@ impl ScheduledPass {
         matches!(&self.job, Job::Host { interval, .. } if interval.is_due(step))
     }
 
-    /// Runs a host system if this is one of its steps.
+    /// Runs a host system if this is one of its steps: what `entries` in `build.rs` made of the pass, as the plan says
+    /// and `explain` prints: `patch_pass` (elements with what follows for nodes), `node_pass`, `shared_pass`, or the system
+    /// by itself.
     pub(super) fn run_on_host(&mut self, step: u64, world: &mut World) -> Result<(), Error> {
         if !self.is_due(step) {
             return Ok(());

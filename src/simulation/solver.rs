@@ -1,17 +1,16 @@
 //! Solvers: what takes steps, one level above the systems. A solver keeps what it has to remember beside the columns,
 //! says how many steps may be taken together before it checks them, and does what has to be done about what it sees.
-//! What a simulation does with its solver is the same for all (see [`Simulation::steps_to`]) but for the step itself:
-//! explicit and pseudo-steps are those of the plan, implicit ones solve for their end.
+//! What a simulation does with its solver is the same for all (`steps_to` in `run.rs`) but for the step itself: explicit
+//! and pseudo-steps are those of the plan, implicit ones solve for their end.
 
+use super::ScheduledPass;
 use super::explain::SolverInUse;
 use super::follow::Follower;
 use super::implicit::{Implicit, OfForces, StepControl};
 use super::relax::Relaxing;
 use super::stable_step::Stability;
-use super::{ScheduledPass, Simulation};
 use crate::components::{Clock, Precision};
 use crate::error::Error;
-use crate::observation::Observer;
 use crate::scene::schema::{self, Scene};
 use bevy_ecs::prelude::*;
 
@@ -134,7 +133,7 @@ impl Solver {
 
     /// The step up to which steps may be taken together from `step` on, where others have something to do before that
     /// of `others`; that of `step` where there is only to check, `None` where nothing is left to do.
-    fn until(&self, step: u64, others: impl FnOnce() -> u64) -> Option<u64> {
+    pub fn until(&self, step: u64, others: impl FnOnce() -> u64) -> Option<u64> {
         match self {
             Self::Explicit(_) | Self::Implicit(_) => Some(self.next_check().min(others())),
             Self::Relaxation(relaxing) if relaxing.equilibrium.reached => None,
@@ -144,7 +143,7 @@ impl Solver {
     }
 
     /// Looks at what steps have come to, where it is time; whether that was the last.
-    fn check(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<bool, Error> {
+    pub fn check(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<bool, Error> {
         match self {
             Self::Relaxation(relaxing) if world.resource::<Clock>().step >= relaxing.next_check() => {
                 relaxing.check(world, passes)?;
@@ -160,50 +159,5 @@ impl Solver {
             Self::Explicit(_) | Self::Implicit(_) => step >= planned,
             Self::Relaxation(relaxing) => relaxing.equilibrium.reached,
         }
-    }
-}
-
-impl Simulation {
-    /// What comes before a step, in an order that does not depend on how the program asks for steps: the state is kept,
-    /// inputs and what hands do are taken up, and then the stable step is checked. A second time before the same step
-    /// it does nothing.
-    fn begin_step(&mut self) -> Result<(), Error> {
-        self.before_the_check()?;
-        self.follow()
-    }
-
-    /// All of it but the check.
-    pub(super) fn before_the_check(&mut self) -> Result<(), Error> {
-        self.wait_for_real_time();
-        self.keep_history_if_due()?;
-        self.take_up_inputs()?;
-        self.begin_batches()
-    }
-
-    /// Takes steps up to `target`, or as far as the solver goes.
-    pub(super) fn steps_to(&mut self, target: u64) -> Result<(), Error> {
-        while self.step_count() < target {
-            self.begin_step()?;
-            self.begin_frame();
-            let step = self.step_count();
-            let Some(until) = self.solver.until(step, || self.next_of_others()) else { return Ok(()) };
-            if step < until {
-                self.some_steps(target.min(until))?;
-                self.end_batches()?;
-                self.end_frame();
-            }
-            if self.solver.check(&mut self.world, &mut self.entries)? {
-                self.world.resource_mut::<Observer>().last_step = self.step_count();
-                self.observe_in_time()?;
-            }
-        }
-        Ok(())
-    }
-
-    /// The next step before which somebody beside the solver has something to do: who sets inputs, who keeps states, a
-    /// hand at a port, the clock on the wall, the end of a frame.
-    fn next_of_others(&self) -> u64 {
-        let kept = self.next_kept().max(self.step_count() + 1);
-        self.next_change().min(kept).min(self.ports.next_end()).min(self.next_tick()).min(self.next_frame())
     }
 }

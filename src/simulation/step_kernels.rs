@@ -5,7 +5,7 @@ use crate::backend::Buffers;
 use crate::backend::dispatch::{self, Dispatched, ElementsThenNodes};
 use crate::backend::kernel::Kernel;
 use crate::backend::many_steps::MOST_ELEMENTS;
-use crate::backend::node_stage::{NodeStage, node_kernels};
+use crate::backend::node_stage::NodeStage;
 use crate::systems::{OnDevice, System};
 use bevy_ecs::prelude::*;
 
@@ -19,7 +19,8 @@ pub(super) fn step_kernels(
     buffers: &mut dyn Buffers,
 ) -> (Vec<Vec<Kernel>>, Vec<Dispatched>) {
     let (mut kernels, mut stages) = described(plan, systems, world, buffers);
-    let dispatched = match &plan.dispatched {
+    let is_decided = plan.dispatched.is_some();
+    let mut dispatched = match &plan.dispatched {
         Some(dispatched) => dispatched.clone(),
         None => decided(plan, &kernels, &stages, world, buffers),
     };
@@ -28,8 +29,12 @@ pub(super) fn step_kernels(
         let (alone, moving, left) = dispatch::grouped(&dispatched, step, world, buffers);
         (kernels[elements], kernels[nodes], stages[nodes]) = (alone, moving, left);
     }
-    for ((kernels, stages), pass) in kernels.iter_mut().zip(stages).zip(plan.passes(true)) {
-        kernels.extend(node_kernels(stages, pass.systems.len() > 1, buffers));
+    for (place, ((kernels, stages), pass)) in kernels.iter_mut().zip(&stages).zip(plan.passes(true)).enumerate() {
+        if !is_decided {
+            let fuse = pass.systems.len() > 1;
+            dispatch::decide_node_kernels(&mut dispatched, place, stages, fuse, buffers);
+        }
+        kernels.extend(dispatch::node_kernels(&dispatched, place, stages, buffers));
     }
     (kernels, dispatched)
 }

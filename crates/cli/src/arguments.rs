@@ -266,6 +266,9 @@ pub struct ExplainArguments {
     /// Print JSON instead of a page
     #[arg(long)]
     pub json: bool,
+    /// Print the whole WGSL of the kernels whose label contains this, instead of a page; of a run on a GPU
+    #[arg(long, value_name = "LABEL", conflicts_with = "json")]
+    pub kernel: Option<String>,
 }
 
 #[derive(Args)]

@@ -18,7 +18,28 @@ pub fn command(arguments: &ExplainArguments) -> Outcome {
         let text = serde_json::to_string_pretty(&explanation).map_err(|error| Failure::Silent(error.into()))?;
         return terminal::hand_out(&format!("{text}\n"));
     }
+    if let Some(label) = &arguments.kernel {
+        return terminal::hand_out(&listings(&explanation, label)?);
+    }
     terminal::hand_out(&with_headings(&explanation.to_string(), Paint::of_stdout()))
+}
+
+/// The text of kernels whose label contains a word.
+fn listings(Explanation { kernels, on_gpu, .. }: &Explanation, label: &str) -> Result<String, Failure> {
+    if !on_gpu {
+        let reason =
+            "--kernel: the scene would run on the CPU, where there is no WGSL; --backend gpu tells what a GPU runs";
+        return Err(Failure::Options(reason.into()));
+    }
+    let wanted = label.to_lowercase();
+    let found = kernels.iter().filter(|kernel| kernel.label.to_lowercase().contains(&wanted));
+    let found: Vec<&str> = found.map(|kernel| kernel.listing.as_str()).collect();
+    if found.is_empty() {
+        let labels: Vec<&str> = kernels.iter().map(|kernel| kernel.label.as_str()).collect();
+        let labels = if labels.is_empty() { "there are none".into() } else { labels.join(", ") };
+        return Err(Failure::Options(format!("--kernel {label}: no kernel's label contains that (kernels: {labels})")));
+    }
+    Ok(found.join("\n\n"))
 }
 
 /// On the backend that a run would take; a GPU that is asked for need not be there.

@@ -3,7 +3,6 @@
 mod corners;
 mod effects;
 mod fetch;
-mod in_own_module;
 mod patch_local;
 mod stress;
 
@@ -14,7 +13,6 @@ use crate::materials::{Elastic, ElasticLaw, FLATTEST, NeoHookean};
 use crate::math::{LANES, Real, Scratch, SimdScalar};
 pub(super) use corners::{corner_registers, group_vectors};
 use fetch::{AHEAD, IN_CACHE};
-use in_own_module::InOwnModule;
 use patch_local::{PatchLocal, part, parts};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
@@ -75,7 +73,7 @@ pub fn run_block<E: Element, T: SimdScalar>(
     law: &BlockLaw<T>,
     groups_a_patch: usize,
 ) -> Vec<usize> {
-    BlockRun::<E, T> { cpu, columns, law, groups_a_patch, element: PhantomData }.run::<_, GENERIC>(&law.elastic)
+    BlockRun::<E, T>::new(cpu, columns, law, groups_a_patch).run::<_, GENERIC>(&law.elastic)
 }
 
 /// The same in f32, where speed counts, with a kernel of its own for what is asked for most: the neo-Hookean law with
@@ -88,7 +86,7 @@ pub fn run_block_fast<E: Element>(
     groups_a_patch: usize,
 ) -> Vec<usize> {
     let effects = kernel_effects::<E>(cpu, law);
-    let block = BlockRun::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
+    let block = BlockRun::<E, f32>::new(cpu, columns, law, groups_a_patch);
     // a constant, so that no code is made of what follows for the other kinds: of a function's result it would be
     if const { !is_specialised::<E>() } {
         return block.run::<_, GENERIC>(&law.elastic);
@@ -104,36 +102,9 @@ pub fn run_block_fast<E: Element>(
     }
 }
 
-/// The same with a law that is known when this is compiled, a user's own, on a machine with vector registers.
-pub(super) fn run_block_of<E: Element, L: Elastic<f32>>(
-    cpu: &Cpu,
-    columns: BlockColumns<'_, '_, f32>,
-    law: &BlockLaw<f32>,
-    elastic: &L,
-    groups_a_patch: usize,
-) -> Vec<usize> {
-    let block = BlockRun::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
-    if const { is_specialised::<E>() } && law.is_elastic() {
-        return block.run::<_, 0>(elastic);
-    }
-    block.run::<_, { GENERIC | VECTORS }>(elastic)
-}
-
-/// The same in f64, with the kernel that asks for each effect.
-pub(super) fn run_block_of_double<E: Element, L: Elastic<f64>>(
-    cpu: &Cpu,
-    columns: BlockColumns<'_, '_, f64>,
-    law: &BlockLaw<f64>,
-    elastic: &L,
-    groups_a_patch: usize,
-) -> Vec<usize> {
-    let block = BlockRun::<E, f64> { cpu, columns, law, groups_a_patch, element: PhantomData };
-    block.run::<_, { GENERIC | VECTORS }>(elastic)
-}
-
 /// Whether an element type has kernels of its own. In the library's unit tests none has: they take most of the time of
 /// compiling, and are tested from outside (`tests/kernels`, `tests/physics`).
-const fn is_specialised<E: Element>() -> bool {
+pub(super) const fn is_specialised<E: Element>() -> bool {
     E::SPECIALISED && !cfg!(test)
 }
 
@@ -157,11 +128,12 @@ pub fn kernel_effects<E: Element>(cpu: &Cpu, law: &BlockLaw<f32>) -> Option<[boo
 const FIBRES: u8 = 1;
 const VISCOSITY: u8 = 2;
 /// The kernel asks the block's law which effects it has.
-const GENERIC: u8 = 4;
+pub(super) const GENERIC: u8 = 4;
 /// There is no such kernel for machines without vector registers.
-const VECTORS: u8 = 8;
+pub(super) const VECTORS: u8 = 8;
 
-struct BlockRun<'a, 'n, E, T: SimdScalar> {
+/// A block's run through its kernel.
+pub(super) struct BlockRun<'a, 'n, E, T: SimdScalar> {
     cpu: &'a Cpu,
     columns: BlockColumns<'a, 'n, T>,
     law: &'a BlockLaw<T>,
@@ -180,8 +152,13 @@ impl<E: Element> BlockRun<'_, '_, E, f32> {
     }
 }
 
-impl<E: Element, T: SimdScalar> BlockRun<'_, '_, E, T> {
-    fn run<L: Elastic<T>, const EFFECTS: u8>(self, elastic: &L) -> Vec<usize> {
+impl<'a, 'n, E: Element, T: SimdScalar> BlockRun<'a, 'n, E, T> {
+    pub fn new(cpu: &'a Cpu, columns: BlockColumns<'a, 'n, T>, law: &'a BlockLaw<T>, groups_a_patch: usize) -> Self {
+        Self { cpu, columns, law, groups_a_patch, element: PhantomData }
+    }
+
+    /// With the kernel of a law with these effects.
+    pub fn run<L: Elastic<T>, const EFFECTS: u8>(self, elastic: &L) -> Vec<usize> {
         let Self { cpu, columns, law, groups_a_patch, element } = self;
         let inverted = Mutex::new(Vec::new());
         let patch = groups_a_patch * LANES;
@@ -328,6 +305,29 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd for O
     }
 }
 
+/// Runs [`OfPatch`] on the machine's registers, and is where kernels are compiled: the compiler keeps a method of a trait with the type it is for, and takes what is in
+/// different modules to different cores. Else all of them were in one piece, most of the time that compiling takes.
+trait OnRegisters: Element {
+    #[inline(never)]
+    fn run_patch<T: SimdScalar, L: Elastic<T>, const EFFECTS: u8>(
+        cpu: &Cpu,
+        task: OfPatch<'_, '_, '_, Self, T, L, EFFECTS>,
+    ) -> bool {
+        // constants, so that no code is made of the other ways; `with_simd` above is what is run
+        if const { EFFECTS == GENERIC } {
+            return cpu.dispatch(task);
+        }
+        let is_inverted = if const { EFFECTS & GENERIC == 0 } {
+            cpu.dispatch_vectors(task)
+        } else {
+            cpu.dispatch_narrow_vectors(task)
+        };
+        debug_assert!(is_inverted.is_some(), "a kernel for vector registers on a machine without");
+        is_inverted.unwrap_or(true)
+    }
+}
+impl<E: Element> OnRegisters for E {}
+
 impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_, E, T, L, EFFECTS> {
     /// One register full of elements, from lane `at` on. Returns −J V, positive for inverted elements.
     #[inline(always)]
@@ -361,6 +361,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
                 #[inline(always)]
                 |row: usize| T::load(simd, &rest_shape[row][at..]),
             );
+            // of an elastic law without more `direct_stress` in its file; `generic_stress` where it is asked what there is
             let (stress, j) = self.stress(simd, law, group, at, point, &state.gradient, shared);
             E::add_stress(&mut forces, point, &state, &stress);
             worst = worst.max(least - j);

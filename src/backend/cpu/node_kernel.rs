@@ -1,22 +1,57 @@
 //! Central differences for nodes of a body, a register full at a time.
 
 mod declared;
-mod integration_coefficients;
+mod foreseen;
 mod node_columns;
 mod one_by_one;
 mod own_rows;
 
 pub(crate) use declared::Asked;
 pub use declared::{Declared, Undeclared};
-pub use integration_coefficients::{Foreseen, IntegrationCoefficients};
+pub use foreseen::Foreseen;
 pub use node_columns::{NodeColumns, Touches};
 pub use own_rows::{NodeShare, OwnRows};
 
 use super::Cpu;
-use crate::components::WORK_NUMBERS;
-use crate::math::{LANES, Real, SimdScalar};
+use crate::components::{Clock, WORK_NUMBERS};
+use crate::math::{LANES, Real, Scalar, SimdScalar};
 use one_by_one::{OneNode, Sum, add_to_sum, move_node};
 use pulp::{Simd, WithSimd};
+
+/// What a step multiplies forces and damping with.
+#[derive(Clone, Copy)]
+pub struct IntegrationCoefficients<T> {
+    /// Δt times the time between the middles of the last and of this step (see [`Clock::half_step_interval`]), times
+    /// the force scale of a static analysis (s²).
+    pub force: T,
+    /// Half the time between the middles, in the first step Δt/2 (s).
+    pub half_step: T,
+    /// 1, in the first step 0.
+    pub after_first: T,
+    /// 1/Δt (1/s).
+    pub rate: T,
+    /// Share of a step's work that is counted, the time between the middles over Δt: 1, in the first step ½.
+    pub work_factor: T,
+    /// a of a static analysis, else 0.
+    pub relaxation: T,
+}
+
+impl<T: Scalar> IntegrationCoefficients<T> {
+    /// In the step that begins at the clock's time.
+    pub fn of(clock: &Clock) -> Self {
+        let (dt, between, first) = (clock.time_step, clock.half_step_interval(), clock.step == 0);
+        let (force_scale, damping) =
+            clock.relaxation.map_or((1.0, 0.0), |relaxation| (relaxation.force_scale, relaxation.damping));
+        Self {
+            force: T::from_f64(force_scale * dt * between),
+            half_step: T::from_f64(0.5 * if first { dt } else { between }),
+            after_first: T::from_f64(if first { 0.0 } else { 1.0 }),
+            rate: T::from_f64(1.0 / dt),
+            work_factor: T::from_f64(between / dt),
+            relaxation: T::from_f64(damping),
+        }
+    }
+}
 
 /// Moves nodes. Returns the lowest row whose displacement is no longer finite.
 pub fn move_nodes<T: SimdScalar>(
@@ -51,8 +86,8 @@ impl<T: SimdScalar> WithSimd for Task<'_, '_, T> {
     fn with_simd<S: Simd>(mut self, simd: S) -> Option<usize> {
         let rows = self.columns.rows();
         let mut bad = None;
-        for from in (0..rows).step_by(CHUNK) {
-            let to = rows.min(from + CHUNK);
+        for from in (0..rows).step_by(ROWS_A_CHUNK) {
+            let to = rows.min(from + ROWS_A_CHUNK);
             let mass = &self.columns.inertia[from..to];
             let plain = self.columns.work.is_none() && mass.iter().all(|&mass| mass > T::default());
             let (internal_work, finite) = if plain { self.chunk(simd, from, to) } else { self.one_by_one(from, to) };
@@ -70,7 +105,7 @@ impl<T: SimdScalar> WithSimd for Task<'_, '_, T> {
 }
 
 /// Nodes whose work is summed before it is added to that of the steps before.
-const CHUNK: usize = 64;
+pub(crate) const ROWS_A_CHUNK: usize = 64;
 
 impl<T: SimdScalar> Task<'_, '_, T> {
     /// Any nodes, one after the other. Returns the work against internal forces (J), and whether displacements are
@@ -92,7 +127,7 @@ impl<T: SimdScalar> Task<'_, '_, T> {
         (internal_work, finite)
     }
 
-    /// At most [`CHUNK`] nodes with mass whose work is not counted: the same operations in the same order as one by
+    /// At most [`ROWS_A_CHUNK`] nodes with mass whose work is not counted: the same operations in the same order as one by
     /// one, for registers full of components.
     #[inline(always)]
     fn chunk<S: Simd>(&mut self, simd: S, from: usize, to: usize) -> (f64, bool) {

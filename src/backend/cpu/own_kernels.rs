@@ -1,9 +1,9 @@
 //! Kernels for a law of the user's own in Rust, compiled in the user's crate.
 
-use super::element_kernel::{run_block_of, run_block_of_double};
+use super::element_kernel::{BlockRun, GENERIC, VECTORS, is_specialised};
 use super::{BlockColumns, BlockLaw, Cpu};
 use crate::components::Block;
-use crate::elements::with_element_of;
+use crate::elements::{Element, with_element_of};
 use crate::materials::Elastic;
 use bevy_ecs::prelude::*;
 use std::fmt;
@@ -89,4 +89,31 @@ impl<L: Elastic<f32>, M: Elastic<f64>> Run for OfLaw<L, M> {
     ) -> Vec<usize> {
         with_element_of!(block, E => run_block_of_double::<E, M>(cpu, columns, law, &self.double, groups_a_patch))
     }
+}
+
+/// As [`run_block`](super::run_block) in f32, with a law that is known when this is compiled, on a machine with vector
+/// registers.
+fn run_block_of<E: Element, L: Elastic<f32>>(
+    cpu: &Cpu,
+    columns: BlockColumns<'_, '_, f32>,
+    law: &BlockLaw<f32>,
+    elastic: &L,
+    groups_a_patch: usize,
+) -> Vec<usize> {
+    let block = BlockRun::<E, f32>::new(cpu, columns, law, groups_a_patch);
+    if const { is_specialised::<E>() } && law.is_elastic() {
+        return block.run::<_, 0>(elastic);
+    }
+    block.run::<_, { GENERIC | VECTORS }>(elastic)
+}
+
+/// The same in f64, with the kernel that asks for each effect.
+fn run_block_of_double<E: Element, L: Elastic<f64>>(
+    cpu: &Cpu,
+    columns: BlockColumns<'_, '_, f64>,
+    law: &BlockLaw<f64>,
+    elastic: &L,
+    groups_a_patch: usize,
+) -> Vec<usize> {
+    BlockRun::<E, f64>::new(cpu, columns, law, groups_a_patch).run::<_, { GENERIC | VECTORS }>(elastic)
 }

@@ -37,6 +37,13 @@ impl Unit {
         self.common.iter().chain(&self.own)
     }
 
+    /// A function of its own with the piece that has it, for people.
+    fn told(&self, function: &str) -> String {
+        let declared = format!("fn {function}(");
+        let piece = self.own.iter().find(|piece| piece.text.contains(&declared));
+        piece.map_or_else(|| function.to_owned(), |piece| format!("`{function}` of {}", piece.path))
+    }
+
     /// What it is known by: its text, and which uniforms each invocation has for itself.
     pub(super) fn key(&self) -> String {
         let mut key: String = self.fragments().flat_map(|fragment| [fragment.text.as_ref(), "\n"]).collect();
@@ -62,6 +69,32 @@ impl Kernel {
             }
         }
         all
+    }
+
+    /// Its whole text, for people: which function of which piece each function without a body stands for, then every
+    /// piece behind its path, the kernel's own first.
+    pub fn listing(&self) -> String {
+        let mut text = format!("// {}: entry point {}\n", self.label, self.entry);
+        let root = self.root();
+        for unit in [&root].into_iter().chain(&self.units) {
+            for Link { function, calls } in &unit.links {
+                let name = |(unit, name): &(UnitId, Cow<'static, str>)| match self.units.get(unit.0) {
+                    Some(unit) => unit.told(name),
+                    None => name.to_string(),
+                };
+                let calls: Vec<String> = calls.iter().map(name).collect();
+                let calls = if calls.is_empty() { "nothing".into() } else { calls.join(", then ") };
+                text += &format!("// {} calls {calls}\n", unit.told(function));
+            }
+        }
+        let mut seen: Vec<&Fragment> = Vec::new();
+        for fragment in root.fragments().chain(self.units.iter().rev().flat_map(Unit::fragments)) {
+            if !seen.contains(&fragment) {
+                text += &format!("\n// ---- {}\n\n{}\n", fragment.path, fragment.text.trim_end());
+                seen.push(fragment);
+            }
+        }
+        text
     }
 
     /// What makes it a kernel of its own: the texts, and how they are put together.

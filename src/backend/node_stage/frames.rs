@@ -1,7 +1,7 @@
 //! The kernels that stages can be in, and which stages share one.
 
 use super::pass::{Pass, written};
-use super::{NodePass, NodeStage, Rows};
+use super::{NodeStage, PassRows, Rows};
 use crate::backend::Buffers;
 use crate::backend::kernel::{Fragment, Kernel, MostBuffers};
 use crate::backend::patch_lists::BATCH_GROUPS;
@@ -73,43 +73,83 @@ impl Frame {
 /// Buffers of a kernel that several stages share, however many the device allows: what more loads gain is little.
 pub const MOST_SHARED: MostBuffers = MostBuffers::new(32, 32);
 
-/// Kernels of stages that follow one another in a step. Those of one body share as few kernels as can be: none in which
-/// a stage reads of other nodes what another writes, and none with more storage buffers than the device has for a
-/// kernel. With `fuse` false each has its own.
-pub fn node_kernels(stages: Vec<NodeStage>, fuse: bool, buffers: &mut dyn Buffers) -> Vec<Kernel> {
-    let mut bodies: Vec<Entity> = Vec::new();
-    for stage in &stages {
-        if !bodies.contains(&stage.body) {
-            bodies.push(stage.body);
-        }
-    }
+/// A kernel that stages of one body share which follow one another in a step.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shared {
+    /// How many stages it has.
+    pub stages: usize,
+    /// Why the next one is in another; empty behind the last.
+    pub because: String,
+}
+
+/// Decides how stages of one body share kernels: as few as can be, none in which a stage reads of other nodes what
+/// another writes, and none with more storage buffers than the device has for a kernel. With `fuse` false each has its
+/// own.
+pub fn split(stages: &[&NodeStage], fuse: bool, buffers: &mut dyn Buffers) -> Vec<Shared> {
+    let mut rest = stages;
     let mut kernels = Vec::new();
-    for body in bodies {
-        let of_body: Vec<&NodeStage> = stages.iter().filter(|stage| stage.body == body).collect();
-        let mut rest = of_body.as_slice();
-        while !rest.is_empty() {
-            let (count, pass) = if fuse { first_together(rest, buffers) } else { (1, alone(rest[0])) };
-            kernels.push(node_pass(pass, &rest[..count], buffers));
-            rest = &rest[count..];
-        }
+    while !rest.is_empty() {
+        let first = match fuse {
+            true => first_together(rest, buffers),
+            false => Shared { stages: 1, because: "no other system shares its pass".into() },
+        };
+        rest = &rest[first.stages..];
+        kernels.push(first);
+    }
+    if let Some(last) = kernels.last_mut() {
+        last.because.clear();
     }
     kernels
 }
 
 /// As many of the first stages as may share a kernel.
-fn first_together(stages: &[&NodeStage], buffers: &mut dyn Buffers) -> (usize, Pass) {
+fn first_together(stages: &[&NodeStage], buffers: &mut dyn Buffers) -> Shared {
     let most = buffers.most_buffers();
-    let mut together = |count: usize| together(&stages[..count], Frame::node_pass(), most, buffers).ok();
+    let mut what_parts = |count: usize| together(&stages[..count], Frame::node_pass(), most, buffers).err();
     // most often all of them
-    if let Some(pass) = together(stages.len()).filter(|_| stages.len() > 1) {
-        return (stages.len(), pass);
+    if stages.len() < 2 || what_parts(stages.len()).is_none() {
+        return Shared { stages: stages.len(), because: String::new() };
     }
-    let fitting = (2..stages.len()).map_while(|count| Some((count, together(count)?)));
-    fitting.last().unwrap_or_else(|| (1, alone(stages[0])))
+    let mut parted = (2..=stages.len()).filter_map(|count| Some((count - 1, what_parts(count)?)));
+    let (count, because) = parted.next().unwrap_or_default();
+    Shared { stages: count.max(1), because }
 }
 
-fn alone(stage: &NodeStage) -> Pass {
-    Pass::of(&[stage], Frame::node_pass())
+/// The kernels of one body's stages, as it was decided how they share them.
+pub fn kernels_of(
+    stages: &[&NodeStage],
+    shared: impl IntoIterator<Item = usize>,
+    buffers: &mut dyn Buffers,
+) -> Vec<Kernel> {
+    let mut rest = stages;
+    let of_kernel = |count: usize| {
+        let (first, others) = rest.split_at(count.clamp(1, rest.len()));
+        rest = others;
+        node_pass(Pass::of(first, Frame::node_pass()), first, buffers)
+    };
+    shared.into_iter().map(of_kernel).collect()
+}
+
+/// Kernels of stages by themselves, without a plan: those of one body share as few as can be, or none with `fuse` false.
+pub fn node_kernels(stages: Vec<NodeStage>, fuse: bool, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+    let mut kernels = Vec::new();
+    for of_body in by_body(&stages) {
+        let shared = split(&of_body, fuse, buffers);
+        kernels.extend(kernels_of(&of_body, shared.iter().map(|shared| shared.stages), buffers));
+    }
+    kernels
+}
+
+/// Stages body by body, in the order in which bodies come up.
+pub fn by_body(stages: &[NodeStage]) -> Vec<Vec<&NodeStage>> {
+    let mut bodies: Vec<Vec<&NodeStage>> = Vec::new();
+    for stage in stages {
+        match bodies.iter_mut().find(|of_body| of_body[0].body == stage.body) {
+            Some(of_body) => of_body.push(stage),
+            None => bodies.push(vec![stage]),
+        }
+    }
+    bodies
 }
 
 /// Stages in one kernel, where nodes go their way independently of each other; or why they cannot be.
@@ -144,13 +184,13 @@ fn node_pass(pass: Pass, stages: &[&NodeStage], buffers: &mut dyn Buffers) -> Ke
         _ => [start, end],
     };
     let [first, count] = rows;
-    pass.into_kernel(stages, NodePass { count, first }, buffers).threads(count - first)
+    pass.into_kernel(stages, PassRows { count, first }, buffers).threads(count - first)
 }
 
 /// The kernel of [`Frame::many_steps`].
 pub fn many_steps(stages: &[&NodeStage], invocations: usize, buffers: &mut dyn Buffers) -> Kernel {
     let pass = Pass::of(stages, Frame::many_steps(invocations));
-    let rows = NodePass { count: stages[0].nodes, first: 0 };
+    let rows = PassRows { count: stages[0].nodes, first: 0 };
     pass.into_kernel(stages, rows, buffers).threads(invocations as u32)
 }
 
@@ -158,6 +198,6 @@ pub fn many_steps(stages: &[&NodeStage], invocations: usize, buffers: &mut dyn B
 pub fn patch_step(stages: &[&NodeStage], invocations: u32, buffers: &mut dyn Buffers) -> Kernel {
     let pass = Pass::of(stages, Frame::patch_step());
     let node = &stages[stages.len() - 1];
-    let rows = NodePass { count: node.nodes, first: node.within.start };
+    let rows = PassRows { count: node.nodes, first: node.within.start };
     pass.into_kernel(stages, rows, buffers).threads(invocations)
 }

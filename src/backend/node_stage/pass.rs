@@ -1,7 +1,7 @@
 //! Stages put together into one kernel: each is a unit of its own, and the kernel's frame calls them in their order.
 
 use super::frames::Frame;
-use super::{Forces, NodePass, NodeStage, Rows};
+use super::{Forces, NodeStage, PassRows, Rows};
 use crate::backend::Buffers;
 use crate::backend::kernel::{
     BindingKind, BufferId, Composed, EntryPoint, Fragment, Kernel, Layout, Link, STEP_RECORDS_VARIABLE, STEP_VARIABLE,
@@ -155,7 +155,7 @@ impl Pass {
     }
 
     /// The kernel of some rows.
-    pub(super) fn into_kernel(self, stages: &[&NodeStage], rows: NodePass, buffers: &mut dyn Buffers) -> Kernel {
+    pub(super) fn into_kernel(self, stages: &[&NodeStage], rows: PassRows, buffers: &mut dyn Buffers) -> Kernel {
         let mut kernel = self.kernel;
         for (variable, number) in self.lists {
             let NodeStage { system, within, rows: Rows::Some(rows), .. } = stages[number] else { continue };
@@ -166,7 +166,7 @@ impl Pass {
             kernel = kernel.bind(variable, list);
         }
         let pass = buffers.uniform(format!("rows of {}", kernel.label), &rows.bytes());
-        kernel.bind_uniform::<NodePass>(PASS_ROWS, pass)
+        kernel.bind_uniform::<PassRows>(PASS_ROWS, pass)
     }
 }
 

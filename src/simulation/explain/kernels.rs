@@ -76,6 +76,7 @@ fn in_use(systems: Vec<String>, kernel: &Kernel, counter: &mut Counter<'_>) -> R
         storage_buffers: entry.map_or(0, |entry| composed.storage_buffers(entry)),
         lines: fragments.iter().map(|piece| piece.lines).sum(),
         bindings: bindings.collect(),
+        listing: kernel.listing(),
         fragments,
     })
 }

@@ -1,6 +1,7 @@
 //! An explanation as a page for people.
 
 use super::{Buffer, ContactInUse, Explanation, KernelInUse, Part, SolverInUse, SystemInUse};
+use crate::backend::dispatch::NodeKernel;
 use std::fmt::{Display, Formatter, Result};
 
 impl Display for Explanation {
@@ -42,6 +43,17 @@ impl Display for Explanation {
         }
         for body in &self.dispatched {
             writeln!(f, "  {:<16}  {}  {}", body.body, body.interior, body.interior_because)?;
+        }
+        let parted = |of: &&NodeKernel| !of.because.is_empty();
+        let mut kernels = self
+            .dispatched
+            .iter()
+            .flat_map(|of| of.node_kernels.iter().filter(parted).map(|kernel| (&of.body, kernel)));
+        if let Some(first) = kernels.next() {
+            writeln!(f, "\nWhy nodes have another kernel")?;
+            for (body, NodeKernel { systems, because, .. }) in std::iter::once(first).chain(kernels) {
+                writeln!(f, "  {body:<16}  after {}: {because}", systems.join(" + "))?;
+            }
         }
         self.kernels.iter().try_for_each(|kernel| write_kernel(kernel, f))?;
         if let Some(SolverInUse { of, held }) = &self.solver {

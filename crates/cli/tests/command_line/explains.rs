@@ -35,6 +35,22 @@ fn contact_says_what_it_looks_at_and_holds() {
 }
 
 #[test]
+fn a_kernel_is_shown_whole() {
+    let place = Workspace::new();
+    let explain = |more: &[&str]| place.sinew(&[&["explain", "block.ron", "--set", "fuse=false"], more].concat());
+    let shown = explain(&["--backend", "gpu", "--kernel", "Gravity"]).said;
+    let heading = "// `call_all` of shaders/node_pass.wgsl calls `gravity` of shaders/gravity.wgsl";
+    for words in [heading, "// ---- shaders/node_pass.wgsl", "fn node_pass(", "// ---- shaders/gravity.wgsl"] {
+        assert_eq!(shown.matches(words).count(), 1, "{words:?} is not once in\n{shown}");
+    }
+    assert!(!shown.contains("shaders/integrate.wgsl"), "{shown}");
+    let unknown = explain(&["--backend", "gpu", "--kernel", "gravty"]);
+    unknown.wants(2, &["--kernel gravty: no kernel's label contains that (kernels: ", "integrate"]);
+    let on_cpu = explain(&["--backend", "cpu", "--kernel", "gravity"]);
+    on_cpu.wants(2, &["would run on the CPU, where there is no WGSL"]);
+}
+
+#[test]
 fn what_is_off_says_what_turns_it_on() {
     let said = Workspace::new().done(&["explain", "block.ron", "--backend", "cpu"]);
     for words in [

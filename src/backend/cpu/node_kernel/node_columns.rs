@@ -1,8 +1,8 @@
 //! What moves nodes, and how it is shared out among tasks.
 
 use super::declared::{Declared, Undeclared};
-use super::integration_coefficients::{Foreseen, IntegrationCoefficients};
 use super::own_rows::OwnRows;
+use super::{Foreseen, IntegrationCoefficients};
 use crate::components::{GROUP_ROWS, WORK_NUMBERS};
 use crate::math::{Scalar, SimdScalar, vector_at};
 use glam::DVec3;
