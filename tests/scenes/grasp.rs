@@ -92,7 +92,7 @@ fn along(simulation: &mut Simulation, x: f64) -> f64 {
 /// At the end each bears half of the weight, and both pull as the law says of the stretch between them.
 ///
 /// After a second of a damping of 25/s what swings is e^−13 of what it was, 2e-6. What the strip hangs through by is
-/// 4e-5 of the force: from x = -2 mm to 2 mm its sides are stretched by 1.356 and 1.342, and it is inclined by .5° there.
+/// 4e-5 of the force: from x = -2 mm to 2 mm its sides are stretched by 1.356 and 1.342, and it is inclined by .5°.
 #[test]
 fn two_forceps_draw_a_strip_as_taut_as_its_law_says() {
     for young in [1e4, 3e4] {
