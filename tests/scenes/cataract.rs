@@ -36,7 +36,8 @@ struct Monitor {
     forces: Vec<(f64, DVec3)>,
 }
 
-fn intake(world: &mut World) -> (f64, bool) {
+/// What the only tool has taken in and no element has gone for (m³), and whether something was in its reach.
+pub fn intake(world: &mut World) -> (f64, bool) {
     let intake = world.query::<&ToolIntake>().single(world).unwrap();
     (intake.get(0), intake.get(1) != 0.0)
 }

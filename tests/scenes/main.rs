@@ -8,6 +8,7 @@ mod column;
 mod cube;
 mod golden;
 mod grasp;
+mod groove;
 mod lens;
 mod lobe;
 mod parameters;

@@ -8,12 +8,13 @@ use sinew::systems::Registry;
 use sinew::{BackendChoice, Options, Simulation};
 
 /// The scenes, and what makes each of them short and coarse.
-pub const SCENES: [(&str, &[&str]); 17] = [
+pub const SCENES: [(&str, &[&str]); 19] = [
     ("ball_on_tissue", &["bodies.tissue.mesh.cells=(12, 8, 3)", "duration=0.15"]),
     ("cataract", &crate::cataract::SHORT),
     ("cube_under_gravity", &["bodies.cube.mesh.cells=(5, 5, 5)", "duration=0.3"]),
     ("folded_strip", &["bodies.strip.mesh.cells=(24, 3, 2)", "duration=0.5"]),
     ("grasped_liver", &["duration=0.3"]),
+    ("groove", &["bodies.gel.mesh.cells=(12, 6, 3)", "duration=0.1"]),
     ("indentation", &["bodies.layer.mesh.cells=(12, 12, 4)"]),
     ("needle", &["bodies.tissue.mesh.cells=(20, 8, 5)", "duration=0.15"]),
     ("probe", &["bodies.tissue.mesh.cells=(16, 8, 4)", "duration=0.2"]),
@@ -28,6 +29,7 @@ pub const SCENES: [(&str, &[&str]); 17] = [
         ],
     ),
     ("stretched_bar", &["bodies.bar.mesh.cells=(20, 2, 2)", "duration=0.5"]),
+    ("traction", &["bodies.strip.mesh.cells=(20, 3, 1)", "duration=0.3"]),
     ("training_set", &["bodies.tissue.copies=4", "probes.last.on=Set(\"copy 3\")", "duration=0.02"]),
     ("trocar", &["bodies.tissue.mesh.cells=(15, 8, 3)", "duration=0.15"]),
     ("twisted_column", &["bodies.column.mesh.cells=(4, 4, 16)", "duration=1.2"]),

@@ -28,6 +28,7 @@ pub fn bundle() -> Bundle {
         "needle",
         "trocar",
         "ball_on_tissue",
+        "traction",
         "stacked_blocks",
         "folded_strip",
     ];
