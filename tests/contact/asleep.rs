@@ -142,6 +142,7 @@ fn course(simulation: &mut Simulation, is_woken: bool) -> Vec<(Moment, u64)> {
 }
 
 #[test]
+#[ignore = "long"]
 fn contact_that_sleeps_wakes_and_sleeps_again_is_what_it_is_awake() {
     for (precision, elements) in [(Precision::F32, ["Tet4", "Hex8"]), (Precision::F64, ["Hex8", "Tet4"])] {
         let text = bouncing(elements, "");

@@ -28,6 +28,7 @@ const FLAT: &str = "tools: {\"tip\": (shape: Plane(), rotation: (180, 0, 0), at:
     contacts: [Tool(tool: \"tip\", friction: 0.3)]";
 
 #[test]
+#[ignore = "long"]
 fn copies_under_a_tool_do_what_the_body_does_by_itself() {
     for run in cpu_and_long_gpu() {
         for (name, done, touched) in

@@ -120,6 +120,7 @@ fn knots_shorten_a_suture_to_what_they_leave() {
 
 /// A thread that is a thousand times as stiff as the tissue makes the step smaller, and stays stable.
 #[test]
+#[ignore = "long"]
 fn a_stiff_suture_counts_for_the_step() {
     let step = |stiffness: &str| {
         let text = cubes("", "", &format!("stiffness: {stiffness}, length: 0.0099"));

@@ -118,6 +118,7 @@ fn points_of_faces_push_the_same_nodes_with_the_same_forces() {
 }
 
 #[test]
+#[ignore = "long"]
 fn edges_push_the_same_nodes_with_the_same_forces() {
     for (friction, more) in LAWS {
         for points in ["", ", points: Faces"] {
@@ -130,6 +131,7 @@ fn edges_push_the_same_nodes_with_the_same_forces() {
 
 /// Lists that do not hold what is near are told from how far nodes have moved, and all is gone through.
 #[test]
+#[ignore = "long"]
 fn old_lists_lose_no_contact_on_a_gpu() {
     lose_no_contact(&[((FACES, TWO), ", points: Faces", 41), ((RING, ITSELF), ", edges: true", 4)]);
 }

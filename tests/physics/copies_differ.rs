@@ -165,6 +165,7 @@ fn each_goes_as_by_itself(run: &Configuration, case: &Case, elements: &str, sett
 const STEPS: &str = "integration: (step: 5e-5),";
 
 #[test]
+#[ignore = "long"]
 fn copies_that_differ_in_all_do_what_each_does_by_itself() {
     for run in configurations() {
         for case in &CASES {
@@ -187,6 +188,7 @@ fn copies_that_differ_do_so_with_all_elements() {
 
 /// Newton's iterations end within their tolerance of a step's motion: see `copies`.
 #[test]
+#[ignore = "long"]
 fn copies_that_differ_step_implicitly() {
     for run in configurations() {
         let solver = "solver: Implicit(scheme: Euler, step: 0.01, tolerance: 1e-8),";
