@@ -275,7 +275,8 @@ fn move_others<T: OfRun>(
     body.note_non_finite(non_finite, &step.clock);
 }
 
-/// Takes nodes through systems, `gather` first, a task's rows at a time; without `observed` their forces go nowhere else.
+/// Takes nodes through systems, `gather` first, a task's rows at a time; without `observed` their forces go nowhere
+/// else.
 pub(super) fn move_rows<'a, T: OfRun>(
     cpu: &Cpu,
     observed: bool,

@@ -118,14 +118,15 @@ pub struct SurfaceContacts {
 #[derive(Clone, Debug, Default)]
 struct Surface {
     triangles: Surfaces,
-    /// The nodes of the facet that each triangle is of; a triangle repeats its last one.
+    /// The nodes of the facet that each triangle is of, where there are points of faces; a triangle repeats its last
+    /// one.
     facets: Vec<[u32; 4]>,
     /// Body and row of each node.
     nodes: Vec<(u32, u32)>,
     /// Nodes, in their order, then points of faces.
     points: Vec<Point>,
-    /// Where each point's numbers are.
-    kept: Vec<body_slices::Kept>,
+    /// The row of each node, and of each point of a face its place among those of its body.
+    places_kept: Vec<u32>,
     /// Points and triangles that are near each other at rest: never in each other's way.
     apart: Vec<(u32, u32)>,
     /// Elements that are there; `None` before anything is known.
@@ -207,6 +208,13 @@ struct MeetingColumns {
 }
 
 impl Surface {
+    /// Where a point's numbers are.
+    fn kept(&self, point: u32) -> body_slices::Kept {
+        let Point { body, triangle, .. } = &self.points[point as usize];
+        let first = MEETING_NUMBERS * self.places_kept[point as usize] as usize;
+        body_slices::Kept { body: *body as usize, of_face: triangle.is_some(), first }
+    }
+
     /// The number of a body; none of those that there are where it meets nobody.
     fn number_of(&self, body: Entity) -> usize {
         let place = self.numbers.binary_search_by_key(&body, |(entity, _)| *entity);

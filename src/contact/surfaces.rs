@@ -51,8 +51,8 @@ pub struct Point {
     pub body: u32,
     /// The nodes it is between, the first so many of them.
     pub nodes: [u32; 4],
-    /// What each has of it.
-    pub weights: [f64; 4],
+    /// What each has of it: one of few ways to weigh the corners of a facet.
+    pub weights: &'static [f64; 4],
     /// The triangle that it is on; `None` of a node.
     pub triangle: Option<u32>,
 }
@@ -60,7 +60,7 @@ pub struct Point {
 impl Point {
     /// A node of a body.
     pub fn node(body: u32, node: u32) -> Self {
-        Self { body, nodes: [node; 4], weights: [1.0, 0.0, 0.0, 0.0], triangle: None }
+        Self { body, nodes: [node; 4], weights: &[1.0, 0.0, 0.0, 0.0], triangle: None }
     }
 
     /// Its nodes and their weights.

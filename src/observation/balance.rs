@@ -55,10 +55,11 @@ pub(super) fn balance(
     if memory.scale > 0.0 && share.abs() > limit {
         let way = if made > 0.0 { "came from nothing" } else { "went into nothing" };
         let message = format!(
-            "{:.1} % of the largest energy so far {way} ({:.1} % are a warning, guards.energy.warn): results are that \
-             uncertain; {}, use ramps, or a finer mesh",
+            "{:.1} % of the largest energy so far {way} ({:.1} % are a warning, {}): results are that uncertain; {}, \
+             use ramps, or a finer mesh",
             100.0 * share.abs(),
             100.0 * limit,
+            settings.limit_of_energy("warn"),
             shorter_steps(world)
         );
         warn(memory, world, "energy", "", share, limit, message);

@@ -38,6 +38,16 @@ pub struct GuardSettings {
     pub removal: bool,
     /// Whether springs of contact act as loads, and may make energy.
     pub springs: bool,
+    /// Whether steps are implicit: limits of energy are ten times those that the scene has.
+    pub implicit: bool,
+}
+
+impl GuardSettings {
+    /// Where a limit of energy, `warn` or `stop`, stands in the scene.
+    pub(super) fn limit_of_energy(&self, name: &str) -> String {
+        let of_scene = format!("guards.energy.{name}");
+        if self.implicit { format!("ten times {of_scene}, for steps are implicit") } else { of_scene }
+    }
 }
 
 /// What broke down, if something did: the first displacement that is not finite, or element that is turned inside out.
@@ -183,10 +193,11 @@ pub(super) fn check_balance(
     }
     let what = format!(
         "elements hold {held:.3e} J, but work on them was only {:.3e} J: {:.1} % of the largest energy so far came from \
-         nothing, {:.1} % are allowed (guards.energy.stop)",
+         nothing, {:.1} % are allowed ({})",
         seen.internal_work,
         100.0 * made / scale,
-        100.0 * stop
+        100.0 * stop,
+        settings.limit_of_energy("stop")
     );
     let cause = format!(
         "a time step that is too large ({}), or a load or motion too sudden for the mesh (use a ramp)",

@@ -34,6 +34,7 @@ pub(super) fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut
         beyond: scene.scene.integration.beyond_stable_step && clock.relaxation.is_none(),
         foreign: false,
         removal: world.query::<&Alive>().iter(world).next().is_some(),
+        implicit: scene.scene.is_implicit(),
         springs: scene.scene.contacts.iter().any(|contact| contact.law() != ContactLaw::Kinematic)
             && clock.relaxation.is_none()
             && !clock.velocities_at_ends,

@@ -296,8 +296,8 @@ impl ScheduledPass {
     }
 
     /// Runs a host system if this is one of its steps: what `entries` in `build.rs` made of the pass, as the plan says
-    /// and `explain` prints: `patch_pass` (elements with what follows for nodes), `node_pass`, `shared_pass`, or the system
-    /// by itself.
+    /// and `explain` prints: `patch_pass` (elements with what follows for nodes), `node_pass`, `shared_pass`, or the
+    /// system by itself.
     pub(super) fn run_on_host(&mut self, step: u64, world: &mut World) -> Result<(), Error> {
         if !self.is_due(step) {
             return Ok(());

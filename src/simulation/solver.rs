@@ -1,7 +1,7 @@
 //! Solvers: what takes steps, one level above the systems. A solver keeps what it has to remember beside the columns,
 //! says how many steps may be taken together before it checks them, and does what has to be done about what it sees.
-//! What a simulation does with its solver is the same for all (`steps_to` in `run.rs`) but for the step itself: explicit
-//! and pseudo-steps are those of the plan, implicit ones solve for their end.
+//! What a simulation does with its solver is the same for all (`steps_to` in `run.rs`) but for the step itself:
+//! explicit and pseudo-steps are those of the plan, implicit ones solve for their end.
 
 use super::ScheduledPass;
 use super::explain::SolverInUse;

@@ -34,7 +34,7 @@ impl SurfaceContacts {
 
     /// Where a point's numbers are.
     pub(super) fn kept(&self, point: u32) -> Kept {
-        self.surface.kept[point as usize]
+        self.surface.kept(point)
     }
 }
 
@@ -42,8 +42,9 @@ impl Surface {
     /// The corners of what a point faces and their weights: of a node those of the triangle, of a point of a face those
     /// of the whole facet.
     pub(super) fn corners_of(&self, point: &Point, facing: &Facing) -> ([u32; 4], [f64; 4]) {
-        let facet = self.facets[facing.triangle as usize];
-        if point.triangle.is_some() && facet[2] != facet[3] {
+        if let Some(&facet) = self.facets.get(facing.triangle as usize).filter(|_| point.triangle.is_some())
+            && facet[2] != facet[3]
+        {
             return (facet, bilinear(facing.at, facet.map(|node| self.places[node as usize])));
         }
         let ([a, b, c], [u, v, w]) = (self.triangles.triangles[facing.triangle as usize], facing.weights);

@@ -31,9 +31,9 @@ fn bytes<T>(slice: &[T]) -> usize {
 
 impl Surface {
     fn memory(&self) -> SurfaceMemory {
-        let Self { facets, nodes, points, kept, apart, places, normals, numbers, .. } = self;
+        let Self { facets, nodes, points, places_kept, apart, places, normals, numbers, .. } = self;
         let of_nodes = bytes(nodes) + bytes(places);
-        let of_points = bytes(points) + bytes(kept) + bytes(apart);
+        let of_points = bytes(points) + bytes(places_kept) + bytes(apart);
         let of_triangles = self.triangles.bytes() + bytes(facets) + bytes(normals) + bytes(numbers);
         let near = bytes(&self.near.nodes) + bytes(&self.near.triangles);
         let of_step = bytes(&self.found) + self.gathered.bytes() + bytes(&self.solved) + bytes(&self.pairs);

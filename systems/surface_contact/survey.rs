@@ -74,8 +74,9 @@ fn clear_apart(contacts: &SurfaceContacts, bodies: &mut Query<(Entity, MeetingCo
         }
         let Some(touch) = &mut columns.face_touch else { continue };
         let mut is_there = vec![false; touch.len() / MEETING_NUMBERS];
-        let kept = contacts.surface.kept.iter().filter(|kept| kept.of_face && kept.body == number as usize);
-        kept.for_each(|kept| is_there[kept.first / MEETING_NUMBERS] = true);
+        let Surface { points, places_kept, .. } = &contacts.surface;
+        let of_body = points.iter().zip(places_kept).filter(|(of, _)| of.triangle.is_some() && of.body == number);
+        of_body.for_each(|(_, &place)| is_there[place as usize] = true);
         for (place, _) in is_there.iter().enumerate().filter(|(_, is_there)| !**is_there) {
             clear(touch, MEETING_NUMBERS * place..MEETING_NUMBERS * place + OF_A_STEP);
         }
@@ -97,25 +98,24 @@ fn remember(contacts: &mut SurfaceContacts, bodies: &mut Query<(Entity, MeetingC
     if !is_other && !is_changed {
         return;
     }
-    let Surface { nodes, kept, pressed, touching, motion, .. } = &mut contacts.surface;
+    let surface = &mut contacts.surface;
     // they may be anywhere
-    *motion = Motion::of(nodes);
-    pressed.clear();
-    touching.clear();
+    surface.motion = Motion::of(&surface.nodes);
+    surface.pressed.clear();
     let columns: Vec<_> = contacts.bodies.iter().filter_map(|&body| bodies.get(body).ok()).collect();
-    for (node, &(body, row)) in (0..).zip(&*nodes) {
+    for (node, &(body, row)) in (0..).zip(&surface.nodes) {
         if columns[body as usize].1.force.vector(row as usize) != DVec3::ZERO {
-            pressed.push(node);
+            surface.pressed.push(node);
         }
     }
     let touches = |point: &u32| {
-        let Kept { body, of_face, first } = kept[*point as usize];
+        let Kept { body, of_face, first } = surface.kept(*point);
         let columns = &columns[body].1;
         let of_faces = columns.face_touch.map(|touch| &touch.0);
         let numbers = if of_face { of_faces } else { Some(&columns.touch.0) };
         numbers.is_some_and(|numbers| numbers.get(first + 4) > super::meet::FREE)
     };
-    touching.extend((0..kept.len() as u32).filter(touches));
+    surface.touching = (0..surface.points.len() as u32).filter(touches).collect();
 }
 
 /// Finds the surfaces.
@@ -158,7 +158,7 @@ fn survey(
             for (corner, weights) in face_points(facet).iter().enumerate().take(room.saturating_sub(first_point)) {
                 let is_on_first = triangles[first].contains(&nodes[corner]);
                 let triangle = Some(if is_on_first { first } else { first + 1 } as u32);
-                of_faces.push(Point { body: number, nodes, weights: *weights, triangle });
+                of_faces.push(Point { body: number, nodes, weights, triangle });
                 places.push((first_point + corner) as u32);
             }
         }
@@ -170,10 +170,9 @@ fn survey(
             surface.pieces.extend(pieces(authoring, &rows));
         }
     }
-    surface.kept = surface.nodes.iter().map(|&(body, row)| kept(body, false, row)).collect();
-    surface.kept.extend(of_faces.iter().zip(places).map(|(point, place)| kept(point.body, true, place)));
+    surface.places_kept = surface.nodes.iter().map(|&(_, row)| row).chain(places).collect();
+    surface.facets = if of_faces.is_empty() { Vec::new() } else { facets };
     surface.points.extend(of_faces);
-    surface.facets = facets;
     let depths = depths.into_iter().map(|depth| f64::min(depth, DEEPEST * contacts.edge)).collect();
     surface.triangles = Surfaces::new(surface.nodes.len(), triangles, owners, depths);
     surface.gathered.slots = vec![u32::MAX; surface.nodes.len()];
@@ -208,11 +207,6 @@ fn pieces(authoring: &Authoring, rows: &[u32]) -> Vec<u32> {
     let mut of_rows = vec![0; of_nodes.len()];
     authoring.node_rows.iter().zip(of_nodes).for_each(|(&row, piece)| of_rows[row as usize] = piece);
     rows.iter().map(|&row| of_rows[row as usize]).collect()
-}
-
-/// Where the numbers of a point are, of a node by its row.
-fn kept(body: u32, of_face: bool, place: u32) -> Kept {
-    Kept { body: body as usize, of_face, first: MEETING_NUMBERS * place as usize }
 }
 
 /// Triangles of a facet; a quadrilateral is cut between the lower of its corners' rows, so that the same is cut alike

@@ -36,7 +36,13 @@ fn passes(simulation: &mut Simulation) -> Passes {
     let kernels = on_gpu.kernels.iter().map(|of| format!("{}: {} × {}", of.system, of.entry, of.times));
     let gpu = kernels
         .chain(on_gpu.dispatched.iter().map(|of| {
-            format!("{}: {}; {} nodes inside patches, {}", of.body, of.because, of.interior, of.interior_because)
+            let parted = of.node_kernels.iter().filter(|kernel| !kernel.because.is_empty());
+            let parted: String =
+                parted.map(|of| format!("; after {}: {}", of.systems.join(" + "), of.because)).collect();
+            format!(
+                "{}: {}; {} nodes inside patches, {}{parted}",
+                of.body, of.because, of.interior, of.interior_because
+            )
         }))
         .collect();
     Passes { cpu, gpu }

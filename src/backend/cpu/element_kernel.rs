@@ -12,7 +12,7 @@ use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::materials::{Elastic, ElasticLaw, FLATTEST, NeoHookean};
 use crate::math::{LANES, Real, Scratch, SimdScalar};
 pub(super) use corners::{corner_registers, group_vectors};
-use fetch::{AHEAD, IN_CACHE};
+use fetch::{AHEAD, IN_CACHE, fetch_nodes};
 use patch_local::{PatchLocal, part, parts};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
@@ -209,6 +209,9 @@ impl<'a, 'n, E: Element, T: SimdScalar> BlockRun<'a, 'n, E, T> {
         });
         cpu.for_each(tasks, |(patch, interior)| {
             let index = patch.first_group / groups_a_patch;
+            if let Some(InsidePatch { free, deferred }) = interior.as_deref().filter(|_| far) {
+                [free, deferred].into_iter().for_each(fetch_nodes);
+            }
             let run = |patch: PatchForces<'_, E, T, L, EFFECTS>, inside: Inside<'_, T>| {
                 T::with_scratch(|scratch| E::run_patch(cpu, OfPatch { patch, inside, scratch }))
             };
@@ -305,8 +308,9 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd for O
     }
 }
 
-/// Runs [`OfPatch`] on the machine's registers, and is where kernels are compiled: the compiler keeps a method of a trait with the type it is for, and takes what is in
-/// different modules to different cores. Else all of them were in one piece, most of the time that compiling takes.
+/// Runs [`OfPatch`] on the machine's registers, and is where kernels are compiled: the compiler keeps a method of a
+/// trait with the type it is for, and takes what is in different modules to different cores. Else all of them were in
+/// one piece, most of the time that compiling takes.
 trait OnRegisters: Element {
     #[inline(never)]
     fn run_patch<T: SimdScalar, L: Elastic<T>, const EFFECTS: u8>(
@@ -361,7 +365,8 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
                 #[inline(always)]
                 |row: usize| T::load(simd, &rest_shape[row][at..]),
             );
-            // of an elastic law without more `direct_stress` in its file; `generic_stress` where it is asked what there is
+            // of an elastic law without more `direct_stress` in its file; `generic_stress` where it is asked what there
+            // is
             let (stress, j) = self.stress(simd, law, group, at, point, &state.gradient, shared);
             E::add_stress(&mut forces, point, &state, &stress);
             worst = worst.max(least - j);

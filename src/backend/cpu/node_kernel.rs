@@ -127,8 +127,8 @@ impl<T: SimdScalar> Task<'_, '_, T> {
         (internal_work, finite)
     }
 
-    /// At most [`ROWS_A_CHUNK`] nodes with mass whose work is not counted: the same operations in the same order as one by
-    /// one, for registers full of components.
+    /// At most [`ROWS_A_CHUNK`] nodes with mass whose work is not counted: the same operations in the same order as one
+    /// by one, for registers full of components.
     #[inline(always)]
     fn chunk<S: Simd>(&mut self, simd: S, from: usize, to: usize) -> (f64, bool) {
         let coefficients = self.coefficients;

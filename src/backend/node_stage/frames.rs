@@ -130,7 +130,8 @@ pub fn kernels_of(
     shared.into_iter().map(of_kernel).collect()
 }
 
-/// Kernels of stages by themselves, without a plan: those of one body share as few as can be, or none with `fuse` false.
+/// Kernels of stages by themselves, without a plan: those of one body share as few as can be, or none with `fuse`
+/// false.
 pub fn node_kernels(stages: Vec<NodeStage>, fuse: bool, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let mut kernels = Vec::new();
     for of_body in by_body(&stages) {

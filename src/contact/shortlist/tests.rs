@@ -32,7 +32,7 @@ fn faced(
     let point = match within {
         true => Point {
             nodes: [25, 26, 27, 27],
-            weights: [0.6, 0.2, 0.2, 0.0],
+            weights: &[0.6, 0.2, 0.2, 0.0],
             triangle: Some(other),
             ..Point::node(1, 25)
         },
