@@ -1,4 +1,5 @@
-//! What closed tools hold: it goes where they take it, whatever pushes, so that the other side takes all of a correction.
+//! What closed tools hold: it goes where they take it, whatever pushes, so that the other side takes all of a
+//! correction.
 
 use super::body_slices::{BodySlices, vector};
 use super::gather::Gathered;

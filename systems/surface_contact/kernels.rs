@@ -1,9 +1,10 @@
 //! The kernels of contact between surfaces. In a step, for each body: where its surface is
 //! (`shaders/surface_contact_place.wgsl`), where it would go (`surface_contact_foresee`, and `surface_contact_hold`
-//! where tools may hold it), what its nodes and points of its faces face (`surface_contact`). Then for all: which edges cross (`surface_contact_edges`), into how many shares
-//! masses are split (`surface_contact_share`), and in each sweep normal forces (`surface_contact_impulse`), what they
-//! do to nodes (`surface_contact_apply`), and the same with `surface_contact_friction` where there is any. At last, for
-//! each body: its loads (`surface_contact_push`), and what is kept of contacts (`surface_contact_touch`).
+//! where tools may hold it), what its nodes and points of its faces face (`surface_contact`). Then for all: which edges
+//! cross (`surface_contact_edges`), into how many shares masses are split (`surface_contact_share`), and in each sweep
+//! normal forces (`surface_contact_impulse`), what they do to nodes (`surface_contact_apply`), and the same with
+//! `surface_contact_friction` where there is any. At last, for each body: its loads (`surface_contact_push`), and what
+//! is kept of contacts (`surface_contact_touch`).
 
 use super::device::{MOTION_WORDS, SurfaceContact, find, is_on_device, note};
 use super::gather::OUT;
