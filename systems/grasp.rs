@@ -1,5 +1,6 @@
 //! `grasp`: closed tools take nodes along. `shaders/grasp.wgsl` is its twin.
 
+mod foreseen;
 mod solved;
 
 use super::node_system::NodeSystem;
@@ -16,6 +17,7 @@ use crate::components::*;
 use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
+pub(super) use foreseen::Grip;
 use glam::{DMat3, DVec3};
 pub(crate) use solved::{HeldNode, held_in_step, note_held};
 

@@ -11,7 +11,7 @@
 //! suction          Displacement                 -> ExternalForce                          per sucked node
 //! suture           SutureForce                  -> ExternalForce                          per sutured node
 //! grab             Displacement                 -> ExternalForce                          per held node
-//! surface_contact  forces, Displacement         -> ExternalForce, ContactForce, SurfaceTouch   per point that may touch
+//! surface_contact  forces, Displacement, ToolHold -> ExternalForce, ContactForce, SurfaceTouch per point that may touch
 //! glue             forces, Displacement         -> ExternalForce, TieState                per tie
 //! free_tool        forces, Displacement, motion -> ExternalForce, motion                  per free tool
 //! tool_contact     forces, Displacement, motion -> ExternalForce, ToolTouch               per node that may touch

@@ -5,6 +5,7 @@ mod crossings;
 mod device;
 mod faced;
 mod gather;
+mod hold;
 mod kernels;
 mod look;
 mod meet;
@@ -205,6 +206,8 @@ struct MeetingColumns {
     touch: &'static mut SurfaceTouch,
     face_touch: Option<&'static mut FaceTouch>,
     face_places: Option<&'static FacePlaces>,
+    /// Where tools may hold its nodes.
+    grip: Option<(&'static Grasps, &'static ToolHold)>,
 }
 
 impl Surface {
@@ -291,7 +294,7 @@ impl SurfaceContacts {
 
 /// A step, or whether it sleeps through it, where that is asked before.
 fn surface_contact(
-    (clock, cpu, observed): (Res<Clock>, Res<Cpu>, Option<Res<Observed>>),
+    (clock, cpu, signals, observed): (Res<Clock>, Res<Cpu>, Res<Signals>, Option<Res<Observed>>),
     mut contacts: ResMut<SurfaceContacts>,
     (mut sleep, mut gain): (Option<ResMut<SurfaceSleep>>, Option<ResMut<ContactGain>>),
     mut bodies: Query<(Entity, MeetingColumns)>,
@@ -322,8 +325,8 @@ fn surface_contact(
     }
     let gain = gain.as_deref_mut().filter(|_| observed.is_some_and(|observed| observed.0));
     match precision {
-        Some(Precision::F32) => step::<f32>(contacts, of_step, &mut bodies, gain),
-        Some(Precision::F64) => step::<f64>(contacts, of_step, &mut bodies, gain),
+        Some(Precision::F32) => step::<f32>(contacts, of_step, &mut bodies, (&signals, gain)),
+        Some(Precision::F64) => step::<f64>(contacts, of_step, &mut bodies, (&signals, gain)),
         None => Ok(()),
     }
 }
@@ -332,7 +335,7 @@ fn step<T: Scalar>(
     contacts: &mut SurfaceContacts,
     of: (&Clock, &Cpu),
     bodies: &mut Query<(Entity, MeetingColumns)>,
-    gain: Option<&mut ContactGain>,
+    (signals, gain): (&Signals, Option<&mut ContactGain>),
 ) -> Result<(), Error> {
     match &of.0.springs {
         Some(springs) if matches!(springs.forces, SpringForces::Sought | SpringForces::Stepped) => {
@@ -359,7 +362,7 @@ fn step<T: Scalar>(
                 meet::forget(contacts, &[], &mut bodies);
             }
             Some((true, mut bodies)) => {
-                meet::meet(contacts, of, &mut bodies, gain);
+                meet::meet(contacts, of, &mut bodies, (signals, gain));
                 contacts.surface.figures.contacts += contacts.surface.gathered.set.contacts.len() as u64;
             }
         },

@@ -221,7 +221,7 @@ fn has_the_structs_of_rust(kernel: &Kernel, composer: &mut Composer) {
 fn kernels_of_attachments_and_surfaces_have_the_buffers_and_the_structs_that_they_name() {
     let mut composer = Composer::default();
     let attached = (kernel_units::attached(""), ["glue", "suture_tension"], 11);
-    for (mut simulation, systems, entries) in [attached, (kernel_units::meeting(), ["surface_contact"; 2], 10)] {
+    for (mut simulation, systems, entries) in [attached, (kernel_units::meeting(), ["surface_contact"; 2], 11)] {
         let (all, _) = all_kernels(simulation.world_mut());
         let mut found = BTreeSet::new();
         for (_, kernel) in all.iter().filter(|(system, _)| systems.contains(&system.as_str())) {

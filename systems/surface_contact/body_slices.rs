@@ -4,6 +4,7 @@ use super::{MeetingColumns, SurfaceContacts};
 use crate::components::*;
 use crate::math::Scalar;
 pub(super) use crate::math::vector_at;
+use crate::systems::grasp::Grip;
 use crate::systems::node_slices::NodeSlices;
 pub(super) use crate::systems::node_slices::{set_vector, vector};
 use bevy_ecs::prelude::*;
@@ -16,6 +17,8 @@ pub(super) struct BodySlices<'a, T> {
     pub touch: &'a mut [T],
     /// Of points of faces; empty where there are none.
     pub face_touch: &'a mut [T],
+    /// Where tools may hold its nodes.
+    pub grip: Option<Grip<'a, T>>,
 }
 
 impl<'a, T> Deref for BodySlices<'a, T> {
@@ -51,6 +54,7 @@ pub(super) fn slices<'a, T: Scalar>(
             force: columns.force.into_inner().slice_mut(),
             touch: columns.touch.into_inner().slice_mut(),
             face_touch: columns.face_touch.map_or(&mut [], |touch| touch.into_inner().slice_mut()),
+            grip: columns.grip.map(|(grasps, hold)| Grip { grasps, numbers: hold.slice() }),
         };
         all.push((contacts.surface.number_of(entity), of_body));
     }

@@ -1,14 +1,15 @@
 //! The kernels of contact between surfaces. In a step, for each body: where its surface is
-//! (`shaders/surface_contact_place.wgsl`), where it would go (`surface_contact_foresee`), what its nodes and points of
-//! its faces face (`surface_contact`). Then for all: which edges cross (`surface_contact_edges`), into how many shares
-//! masses are split (`surface_contact_share`), and in each sweep normal forces (`surface_contact_impulse`), what they
-//! do to nodes (`surface_contact_apply`), and the same with `surface_contact_friction` where there is any. At last, for
-//! each body: its loads (`surface_contact_push`), and what is kept of contacts (`surface_contact_touch`).
+//! (`shaders/surface_contact_place.wgsl`), where it would go (`surface_contact_foresee`, and `surface_contact_hold`
+//! where tools may hold it), what its nodes and points of its faces face (`surface_contact`). Then for all: which edges
+//! cross (`surface_contact_edges`), into how many shares masses are split (`surface_contact_share`), and in each sweep
+//! normal forces (`surface_contact_impulse`), what they do to nodes (`surface_contact_apply`), and the same with
+//! `surface_contact_friction` where there is any. At last, for each body: its loads (`surface_contact_push`), and what
+//! is kept of contacts (`surface_contact_touch`).
 
 use super::device::{MOTION_WORDS, SurfaceContact, find, is_on_device, note};
 use super::gather::OUT;
 use super::meet::{FACES, FREE, SLIDES, STICKS};
-use super::{Meeting, SurfaceContacts};
+use super::{Meeting, SurfaceContacts, hold};
 use crate::backend::Buffers;
 use crate::backend::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
 use crate::backend::step::with_step;
@@ -207,8 +208,9 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
             (contacts.bodies[body], whole.of_body(body as u32, first, end - first))
         })
         .collect();
-    for &(body, of) in &of_bodies {
+    for (number, &(body, of)) in of_bodies.iter().enumerate() {
         all.extend(before(&shared, body, of, world, buffers));
+        all.extend(hold::kernel(&contacts, number, shared.nodes, world, buffers));
     }
     all.extend(points.iter().filter(|points| points.face).map(|points| shared.face(points, world, buffers)));
     let surface = buffers.uniform("surface_contact".into(), &whole.bytes());

@@ -102,7 +102,7 @@ pub(super) fn meet<T: Scalar>(
     contacts: &mut SurfaceContacts,
     (clock, cpu): (&Clock, &Cpu),
     bodies: &mut [BodySlices<'_, T>],
-    gain: Option<&mut ContactGain>,
+    (signals, gain): (&Signals, Option<&mut ContactGain>),
 ) {
     let coefficients = IntegrationCoefficients::<f64>::of(clock);
     let found = std::mem::take(&mut contacts.surface.found);
@@ -110,6 +110,7 @@ pub(super) fn meet<T: Scalar>(
     release(&mut contacts.surface, bodies);
     gathered.clear();
     gathered.foresee(&contacts.surface, &coefficients, bodies, cpu);
+    gathered.hold(&contacts.surface, (&coefficients, signals), bodies);
     let in_step = InStep { largest: contacts.surface.motion.largest, settling: contacts.settling(clock) };
     gather(contacts, &mut gathered, &found, &in_step, bodies);
     forget(contacts, &gathered.facing, bodies);

@@ -19,6 +19,7 @@ mod frames;
 mod free_tools;
 mod glue;
 mod grasp;
+mod grasped_surfaces;
 mod implicit;
 mod implicit_ties;
 mod ironing;

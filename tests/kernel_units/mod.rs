@@ -118,12 +118,13 @@ pub fn of_tools() -> Vec<String> {
 }
 
 /// Parts of `surface_contact`.
-pub const SURFACES: [&str; 20] = [
+pub const SURFACES: [&str; 21] = [
     "surface_contact_apply",
     "surface_contact_begin",
     "surface_contact_edges",
     "surface_contact_foresee",
     "surface_contact_friction",
+    "surface_contact_hold",
     "surface_contact_impulse",
     "surface_contact_place",
     "surface_contact_push",
@@ -149,7 +150,9 @@ pub fn meeting() -> Simulation {
         "(duration: 1, bodies: {{\"a\": {}, \"b\": {}, \"c\": {}}},
         materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
         contacts: [Between(bodies: (\"a\", \"b\"), friction: 0.3, edges: true),
-            Between(bodies: (\"b\", \"c\"), points: Faces)])",
+            Between(bodies: (\"b\", \"c\"), points: Faces)],
+        tools: {{\"t\": (shape: Sphere(radius: 0.1))}},
+        attachments: [Grasp(tool: \"t\", body: \"a\", on: All, closed: Step())])",
         block(0.0),
         block(1.0),
         block(2.0)

@@ -99,6 +99,58 @@ fn agree(what: &str, make: impl Fn() -> Simulation, (of_faces, roundings, least)
     eprintln!("{what}: {} of {touched} nodes beyond rounding: {different:?}", different.len());
 }
 
+/// Forceps hold most of the upper face of the lower block, and move; some nodes have slipped out.
+fn held(friction: f64, more: &str) -> Simulation {
+    let more = format!(
+        "{more})], tools: {{\"forceps\": (shape: Sphere(radius: 0.01),
+            path: [(t: 0, at: (0.01, 0.01, 0.025)), (t: 0.5, at: (0.01, 0.012, 0.027), rotation: (0, 5, 0))])}},
+        attachments: [Grasp(tool: \"forceps\", body: \"low\", on: Plane(normal: (0, 0, 1), at: 0.02),
+            closed: Step(), strength: 1e3"
+    );
+    let mut simulation = world((FACES, TWO), friction, &more);
+    let world = simulation.world_mut();
+    let values = world.resource::<Signals>().values().to_vec();
+    for body in entities::<ToolHold>(world) {
+        let (grasps, mut hold) =
+            (world.get::<Grasps>(body).unwrap().clone(), world.get::<ToolHold>(body).unwrap().clone());
+        let (rest, u) = (world.get::<RestPosition>(body).unwrap(), world.get::<Displacement>(body).unwrap());
+        let pose = Pose::of_slots(&values[grasps.grasps[0].tool.signal..]);
+        for (place, &row) in grasps.rows.iter().enumerate() {
+            let row = row as usize;
+            let at = grasps.numbers() * place;
+            hold.set(at + 3, if place % 5 == 2 { 2.0 } else { 1.0 });
+            let off = 2e-5 * (place % 3) as f64;
+            hold.set_vector_at(at + 6, pose.inverse(rest.0[row] - grasps.reference + u.vector(row) - off));
+        }
+        *world.get_mut::<ToolHold>(body).unwrap() = hold;
+    }
+    simulation
+}
+
+/// Where a tool takes a node is rounded once more, as a place.
+#[test]
+fn what_is_held_pushes_with_the_same_forces() {
+    for (friction, more) in LAWS {
+        for (more, of_faces) in [(more.to_string(), false), (format!("{more}, points: Faces"), true)] {
+            let what = format!("held, friction {friction}{more}");
+            agree(&what, || held(friction, &more), (of_faces, 24.0, 41));
+            let force = |mut simulation: Simulation| -> f64 {
+                let registry = Registry::default();
+                let mut system =
+                    registry.get("surface_contact").unwrap().host.alone("surface_contact", simulation.world_mut());
+                system.initialize(simulation.world_mut());
+                system.run((), simulation.world_mut()).unwrap().unwrap();
+                let world = simulation.world_mut();
+                let body = entities::<ContactForce>(world)[0];
+                world.get::<ContactForce>(body).unwrap().vectors().map(|force| force.length()).sum()
+            };
+            let [free, held] = [world((FACES, TWO), friction, &more), held(friction, &more)].map(force);
+            println!("{what}: {free} and {held} N");
+            assert!((held - free).abs() > 0.1 * free, "{what}: they hold: {free} and {held} N");
+        }
+    }
+}
+
 const LAWS: [(f64, &str); 4] =
     [(0.0, ""), (0.4, ""), (0.4, ", sweeps: 3"), (0.4, ", law: Penalty(share: 0.5, damping: 0.2)")];
 
