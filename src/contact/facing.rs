@@ -5,7 +5,6 @@ use super::shortlist::{MOST, Shortlist, Stays};
 use super::surfaces::{Placed, Point, Surfaces};
 use crate::mesh::OnTriangle;
 use glam::DVec3;
-use prefetch_index::prefetch_index;
 
 /// Surfaces face one another where the cosine between their normals is below this.
 pub const TURNED_AWAY: f64 = 0.2;
@@ -126,16 +125,6 @@ impl Surfaces {
             faced.first = Some(Facing { triangle: triangles[number], weights, at: nearest, normal, gap });
         }
         true
-    }
-
-    /// Asks memory for what [`faced_at_a_glance`](Self::faced_at_a_glance) reads of a point.
-    #[inline]
-    pub fn fetch(&self, now: Placed<'_>, short: &Shortlist) {
-        for &triangle in short.triangles().unwrap_or_default() {
-            prefetch_index(&self.depths, triangle as usize);
-            let corners = self.triangles[triangle as usize];
-            corners.into_iter().for_each(|node| prefetch_index(now.places, node as usize));
-        }
     }
 
     /// Whether a place is outside of a triangle that is nearest at a part of it: then it is so as far as that is away,

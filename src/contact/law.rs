@@ -156,6 +156,13 @@ impl Contact {
     }
 }
 
+/// What a contact begins a step with: the step that is predicted of the point against the face, and its slip (m).
+#[derive(Clone, Copy, Debug)]
+pub struct Beginning {
+    step: DVec3,
+    slip: DVec3,
+}
+
 /// Contacts that act in the same step, and the nodes they act on.
 #[derive(Clone, Debug, Default)]
 pub struct ContactSet {
@@ -248,18 +255,23 @@ impl ContactSet {
         cpu.dispatch(Forces { contacts, forces });
     }
 
-    /// Kinetic energy (J) that one sweep has given beyond what it can, from contacts as they were `before`; 0 where it
-    /// has not, but for rounding.
+    /// What its contacts begin the step with.
+    pub fn beginnings(&self) -> impl Iterator<Item = Beginning> + '_ {
+        self.contacts.iter().map(|&Contact { step, slip, .. }| Beginning { step, slip })
+    }
+
+    /// Kinetic energy (J) that one sweep has given beyond what it can, from what contacts began with; 0 where it has
+    /// not, but for rounding.
     ///
     /// That is at most Σ (g² − (n · r*)²)/(2D) + s²/(2D') over the contacts that press, r* the steps that were
     /// predicted, s what has slipped elastically: a point that is not inside takes energy, and one that is gives back
     /// what a spring would hold that is so stiff as to push it out in a step.
-    pub fn beyond_bound(&self, before: &[Contact]) -> f64 {
+    pub fn beyond_bound(&self, before: &[Beginning]) -> f64 {
         let (mut beyond, mut size) = (0.0, 0.0);
         for (contact, start) in self.contacts.iter().zip(before).filter(|(of, _)| of.pressing > 0.0) {
             let given = contact.force().dot(0.5 * (start.step + contact.step));
             let along = contact.normal.dot(start.step);
-            let [inside, taken] = [start.gap, along].map(|length| length * length / (2.0 * contact.yields));
+            let [inside, taken] = [contact.gap, along].map(|length| length * length / (2.0 * contact.yields));
             let rubs = contact.rubbing != DVec3::ZERO;
             let slipped = if rubs { start.slip.length_squared() / (2.0 * contact.yields_along) } else { 0.0 };
             beyond += given - inside + taken - slipped;

@@ -19,7 +19,7 @@ pub use candidates::{Kept, Listed};
 pub use edges::{Crossing, Edge, distance};
 pub use face_points::{bilinear, face_points};
 pub use facing::{Faced, Facing, Own, TURNED_AWAY};
-pub use law::{Contact, ContactSet};
+pub use law::{Beginning, Contact, ContactSet};
 pub use lists::{Finder, Lists};
 pub use neighbourhoods::Neighbourhoods;
 pub use parts::Parts;

@@ -8,9 +8,6 @@ use crate::contact::{Faced, Kept, Listed, Own, Placed, Shortlist, Stays};
 /// Points that a task looks at.
 const POINTS_A_TASK: usize = 128;
 
-/// How many points beforehand memory is asked for what is read of them: more or fewer make no difference.
-const AHEAD: usize = 4;
-
 /// Where more than one of so many points goes through its list, the normals of all that is near are found beforehand:
 /// else few are asked for.
 const KNOWN: usize = 8;
@@ -117,11 +114,7 @@ impl Looking<'_> {
     fn face(&self, Awake { found, first, shortlists, wake, kept }: Awake<'_>) {
         let Looking { contacts, now, .. } = *self;
         let (surface, edge, mut own) = (&contacts.surface, contacts.edge, Own::default());
-        for index in 0..found.len() {
-            if let Some(next) = found.get(index + AHEAD) {
-                surface.triangles.fetch(now, &shortlists[next.place as usize - first]);
-            }
-            let Found { place, faced } = &mut found[index];
+        for Found { place, faced } in found {
             let place = *place as usize;
             let (point, short) =
                 (&surface.points[surface.lists.points[place] as usize], &mut shortlists[place - first]);

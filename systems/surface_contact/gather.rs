@@ -6,7 +6,7 @@ use super::meet::{FACES, FREE, STICKS};
 use super::{Meeting, Surface, SurfaceContacts};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
-use crate::contact::{Contact, ContactSet, Parts};
+use crate::contact::{Beginning, Contact, ContactSet, Parts};
 use crate::math::Scalar;
 use glam::{DVec3, DVec4};
 
@@ -42,8 +42,8 @@ pub(super) struct InStep {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Gathered {
     pub set: ContactSet,
-    /// Its contacts before it is solved, where somebody looks afterwards.
-    pub before: Vec<Contact>,
+    /// What its contacts begin the step with, where somebody looks afterwards.
+    pub before: Vec<Beginning>,
     pub met: Vec<Met>,
     /// Place of each node of the surfaces in the set, of those that are near something.
     pub slots: Vec<u32>,

@@ -117,7 +117,8 @@ pub(super) fn meet<T: Scalar>(
     let is_known = clock.relaxation.is_none() && contacts.sweeps <= 1;
     let gain = gain.filter(|_| is_known && !gathered.set.contacts.iter().any(|contact| contact.springs));
     if gain.is_some() {
-        gathered.before.clone_from(&gathered.set.contacts);
+        gathered.before.clear();
+        gathered.before.extend(gathered.set.beginnings());
     }
     gathered.set.solve(contacts.sweeps, cpu);
     if let Some(gain) = gain {

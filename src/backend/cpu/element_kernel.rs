@@ -12,7 +12,7 @@ use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::materials::{Elastic, ElasticLaw, FLATTEST, NeoHookean};
 use crate::math::{LANES, Real, Scratch, SimdScalar};
 pub(super) use corners::{corner_registers, group_vectors};
-use fetch::{AHEAD, IN_CACHE, fetch_nodes};
+use fetch::{AHEAD, IN_CACHE};
 use patch_local::{PatchLocal, part, parts};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
@@ -209,9 +209,6 @@ impl<'a, 'n, E: Element, T: SimdScalar> BlockRun<'a, 'n, E, T> {
         });
         cpu.for_each(tasks, |(patch, interior)| {
             let index = patch.first_group / groups_a_patch;
-            if let Some(InsidePatch { free, deferred }) = interior.as_deref().filter(|_| far) {
-                [free, deferred].into_iter().for_each(fetch_nodes);
-            }
             let run = |patch: PatchForces<'_, E, T, L, EFFECTS>, inside: Inside<'_, T>| {
                 T::with_scratch(|scratch| E::run_patch(cpu, OfPatch { patch, inside, scratch }))
             };

@@ -2,7 +2,6 @@
 //! the core finds out too late what comes next.
 
 use super::PatchForces;
-use crate::backend::cpu::NodeColumns;
 use crate::elements::Element;
 use crate::materials::Elastic;
 use crate::math::{LANES, SimdScalar};
@@ -29,20 +28,6 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
         }
         let numbers = self.memory_rows * LANES;
         ask(&*self.memory, group * numbers, numbers);
-    }
-}
-
-/// Asks for what the nodes inside a patch are moved with as soon as its forces are known: of columns that are read in
-/// pieces of some hundred bytes.
-pub(super) fn fetch_nodes<T>(nodes: &NodeColumns<'_, T>) {
-    ask(nodes.inertia, 0, nodes.inertia.len());
-    ask(nodes.axes, 0, nodes.axes.len());
-    ask(&*nodes.step, 0, nodes.step.len());
-    for column in nodes.compensation.iter().flatten() {
-        ask(&**column, 0, column.len());
-    }
-    if let Some(damping) = nodes.damping {
-        ask(damping, 0, damping.len());
     }
 }
 
