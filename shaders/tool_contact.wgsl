@@ -48,9 +48,6 @@ fn first_touch(tool: u32, start: vec3<f32>, end: vec3<f32>, touch: ptr<function,
     for (var turn = 0u; turn < SWEEP_TURNS; turn++) {
         let at = mix(start, end, share);
         let surface = distance_to(tools[tool], at);
-        if turn == 0u && surface.w < -SWEEP_NEAR * beyond {
-            return;
-        }
         (*touch).plane_normal = surface.xyz;
         (*touch).plane_at = at - surface.w * surface.xyz;
         if surface.w <= SWEEP_NEAR * beyond {
@@ -85,7 +82,7 @@ fn predict(tool: u32, place: vec3<f32>, before: vec3<f32>, predicted: vec3<f32>,
     }
     let surface = surface_of(tool, &touch, of_tool);
     var allowed = 0.0;
-    if surface.w < 0.0 && !touch.swept {
+    if surface.w < 0.0 {
         var out = limits.settling * step.time_step;
         if limits.counts_work == 0u {
             out = 0.1 * limits.edge;

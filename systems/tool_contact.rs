@@ -243,10 +243,8 @@ impl ToolContacts {
         let ToolInStep { pose, earlier, change, .. } = &step.tools[tool];
         let end = place + predicted;
         let of_tool = pose.inverse(end);
-        let plane = match contact.swept > 0.0 {
-            true => sweep::first_touch(&contact.geometry, contact.swept, [earlier.inverse(place), of_tool]),
-            false => None,
-        };
+        let here = earlier.inverse(place);
+        let plane = sweep::first_touch(&contact.geometry, contact.swept, [here, of_tool]);
         let (distance, normal) = Touch::surface(plane, contact, of_tool);
         if distance > self.edge {
             return None;
@@ -254,7 +252,6 @@ impl ToolContacts {
         let [sticking, sliding] = contact.friction;
         let friction = if stuck { sticking } else { sliding };
         if let Some(spring) = contact.spring {
-            let here = earlier.inverse(place);
             let (distance, normal) = contact.geometry.distance(here);
             let (normal, tool_step) = (earlier.rotation * normal, change.place(here));
             let gap = spring.gap(distance, normal.dot(before - tool_step));
@@ -262,9 +259,9 @@ impl ToolContacts {
             return (gap < 0.0).then_some(Touch { slides: true, springs: true, ..still });
         }
         let mut target = 0.0;
-        if distance < 0.0 && plane.is_none() {
+        if distance < 0.0 {
             // who is inside already comes out by and by
-            let now = contact.geometry.distance(earlier.inverse(place)).0;
+            let now = contact.geometry.distance(here).0;
             target = (now + step.out).min(0.0);
         }
         let (normal, tool_step) = (pose.rotation * normal, change.place(of_tool));

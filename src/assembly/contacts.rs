@@ -21,8 +21,8 @@ const DEEPEST: f64 = 0.5;
 /// How far a tool may go in a step, in edges: beyond, it may be through a surface before anybody sees it.
 pub(super) const FARTHEST: f64 = 0.5;
 
-/// How far a tool may go in a step without a word, as a share of half of what it measures across: who goes more than
-/// all of that could be beyond its middle, and would be let out on the other side.
+/// How far a node may go in a step against a tool with only its end looked at, as a share of half of what the tool
+/// measures across: who goes more than all of that could be beyond its middle, and would be let out on the other side.
 const SAFELY: f64 = 0.5;
 
 /// Half of what a tool measures across, in edges, below which it may slip between nodes.
@@ -44,7 +44,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let reference = reference(&body.placed.mesh.points);
         let edge = edge(body);
         for (number, contact) in scene.contacts.iter().enumerate() {
-            let Contact::Tool { tool, body: of, on, thin, swept, .. } = contact else { continue };
+            let Contact::Tool { tool, body: of, on, thin, .. } = contact else { continue };
             if of.as_ref().is_some_and(|of| of != name) {
                 continue;
             }
@@ -65,7 +65,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             let signal = world.resource_mut::<Signals>().add(signal);
             let (friction, spring) = (contact.friction(), spring_of(contact, scene));
             let (tool, geometry) = (tool.clone(), geometry.clone());
-            let swept = if *swept { sweeps_beyond(&geometry, edge) } else { 0.0 };
+            let swept = if spring.is_none() { sweeps_beyond(&geometry, edge) } else { 0.0 };
             tools.push(ToolContact { tool, geometry, signal, friction, spring, swept });
         }
         if tools.is_empty() {
@@ -84,9 +84,9 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
 }
 
 /// How far a node may go in a step against a tool (m) with only its end looked at: who goes half as far as the tool is
-/// thick from its middle is still nearest to the side that it came through.
+/// thick from its middle is still nearest to the side that it came through. 0: it may be any way.
 fn sweeps_beyond(geometry: &Geometry, edge: f64) -> f64 {
-    geometry.smallest_radius().map_or(f64::MAX, |radius| (SAFELY * radius).max(1e-6 * edge))
+    geometry.smallest_radius().map_or(0.0, |radius| (SAFELY * radius).max(1e-6 * edge))
 }
 
 /// The spring of a contact, if its law is one. At rest nothing damps.
@@ -229,7 +229,7 @@ pub fn motion(tool: &Tool) -> ToolMotion {
     }
 }
 
-/// Looks for nodes inside tools at the start, and for tools that are too fast for the step.
+/// Looks for nodes inside tools at the start, and for tools that are too fast for the mesh.
 pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Diagnostics) {
     let clock = world.resource::<Clock>();
     for (name, body) in &assembly.bodies {
@@ -252,7 +252,6 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
             jumps(&contact.tool, tool, "nodes that it meets there are pushed out by and by", diagnostics);
             let reach = contact.geometry.bounding_sphere().map_or(0.0, |(center, radius)| center.length() + radius);
             let speed = motion.fastest(reach);
-            through(contact, tool, speed * clock.time_step, diagnostics);
             if speed * clock.time_step > FARTHEST * contacts.edge {
                 let message = format!(
                     "the tool `{}` goes up to {speed:.3e} m/s, {:.3e} m a step, and faces of `{name}` have edges of {:.3e} m",
@@ -266,26 +265,6 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
                 ));
             }
         }
-    }
-}
-
-/// Looks for tools that go so far in a step (m) that nodes may come out of them on the other side.
-fn through(contact: &ToolContact, tool: &Tool, way: f64, diagnostics: &mut Diagnostics) {
-    let Some(radius) = contact.geometry.smallest_radius() else { return };
-    if contact.swept > 0.0 || contact.spring.is_some() || way <= SAFELY * radius {
-        return;
-    }
-    let name = &contact.tool;
-    let path = format!("tools.\"{name}\"");
-    let goes = format!("the tool `{name}` goes {way:.3e} m a step, and is {radius:.3e} m thick from its middle");
-    let time = if tool.port.is_some() { "lower the `speed` of its port" } else { "give it more time" };
-    let ways_out =
-        format!("`swept: true` in the contact looks at nodes' whole way; or {time}, or take a smaller `step`");
-    // rounding of a way that is just as long is none
-    if way > (1.0 + 1e-9) * radius {
-        diagnostics.error_at(path.as_str(), format!("{goes}: nodes could go through it unseen")).note(ways_out);
-    } else {
-        diagnostics.warn_at(path.as_str(), format!("{goes}: faster, and nodes could go through it")).note(ways_out);
     }
 }
 

@@ -1,4 +1,5 @@
-//! Tools that go farther in a step than they are thick: where a node's way first meets them.
+//! Nodes that go farther in a step against a tool than it is thick, for it is fast, or they are drawn hard: where their
+//! way first meets it.
 
 use super::Touch;
 use crate::components::ToolContact;
@@ -25,11 +26,12 @@ impl Touch {
     }
 }
 
-/// Where the way of a node first meets a tool, from one place to another in its frame; `None` where it never does,
-/// begins inside, or is no longer than what may be looked at by its end alone (`beyond`, m).
+/// Where the way of a node first meets a tool, from one place to another in its frame; `None` where it never does, or
+/// is no longer than what may be looked at by its end alone (`beyond`, m).
 ///
 /// By conservative advancement: a distance is never more than the true one, so that much of the way is free. The
-/// plane is that of the nearest place on the surface; a tool that is convex there is all behind it.
+/// plane is that of the nearest place on the surface; a tool that is convex there is all behind it. Of a way that begins
+/// inside it is the side that the node is nearest to where it begins.
 pub(super) fn first_touch(geometry: &Geometry, beyond: f64, [from, to]: [DVec3; 2]) -> Option<Plane> {
     let way = from.distance(to);
     if beyond <= 0.0 || way.is_nan() || way <= beyond {
@@ -37,12 +39,9 @@ pub(super) fn first_touch(geometry: &Geometry, beyond: f64, [from, to]: [DVec3; 
     }
     let mut share = 0.0;
     let mut met = None;
-    for turn in 0..TURNS {
+    for _ in 0..TURNS {
         let at = from.lerp(to, share);
         let (distance, normal) = geometry.distance(at);
-        if turn == 0 && distance < -NEAR * beyond {
-            return None;
-        }
         met = Some((normal, at - distance * normal));
         if distance <= NEAR * beyond {
             break;

@@ -181,10 +181,6 @@ pub enum Contact {
         /// That the tool is thinner than the faces that it meets, and may slip between nodes: then it is not warned of.
         #[serde(default)]
         thin: bool,
-        /// That a node's whole way in a step is looked at, and not only where it ends: of tools that go farther in a
-        /// step than they are thick.
-        #[serde(default)]
-        swept: bool,
         /// What keeps nodes out.
         #[serde(default)]
         law: ContactLaw,

@@ -183,16 +183,11 @@ fn contacts(scene_: &Scene, validator: &mut Validator) {
         let path = scene("contacts").index(number);
         friction(scene_, validator, &path, contact);
         law(scene_, validator, &path.name("law"), contact);
-        let Contact::Tool { tool, body, on, swept, .. } = contact else {
+        let Contact::Tool { tool, body, on, .. } = contact else {
             surfaces(scene_, validator, &path, contact);
             continue;
         };
         named(scene_, validator, &path, tool);
-        if *swept && scene_.tools.get(tool).is_some_and(|tool| tool.free.is_some()) {
-            let message =
-                format!("`{tool}` is a free body, which is stopped by what it meets in a step: half an edge at most");
-            validator.out.error_at(path.name("swept"), message).note("leave `swept` out");
-        }
         body_named(scene_, validator, &path, body.as_ref());
         select::validate(validator, &path.name("on"), on);
         let count = of_body.entry(body.as_ref().or(scene_.bodies.keys().next())).or_default();
@@ -331,12 +326,6 @@ fn law(scene_: &Scene, validator: &mut Validator, path: &Path, contact: &Contact
     {
         let message = format!("a spring has one force, and not one of {sweeps} sweeps");
         validator.out.error_at(path, message).note("leave `sweeps` out");
-    }
-    if let Contact::Tool { swept: true, .. } = contact {
-        validator
-            .out
-            .error_at(path, "a spring pushes where a node is, and `swept` looks at its way")
-            .note("leave one of both out: the kinematic law goes with `swept`");
     }
     if let Contact::Tool { tool, .. } = contact
         && scene_.tools.get(tool).is_some_and(|tool| tool.free.is_some())

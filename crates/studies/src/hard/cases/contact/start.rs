@@ -17,23 +17,18 @@ pub fn tunnelling(trial: &mut Trial<'_>) -> Result<(), Error> {
 fn needle(trial: &mut Trial<'_>, (radius, way, step): (f64, f64, f64), young: f64) -> Result<(), Error> {
     // from half a radius above the slab
     let (from, to) = (1.5 * radius, 1.5 * radius - way);
-    let unseen = [(0.1, 0.0), (0.4, 0.0), (1.0, 0.0), (2.0, 0.0), (5.0, 0.0), (0.1, 5e-4)];
-    let swept = [(1.0, 0.0), (2.0, 0.0), (5.0, 0.0)];
-    let all = unseen.map(|case| (case, false)).into_iter().chain(swept.map(|case| (case, true)));
-    for ((radii, aside), swept) in all {
+    for (radii, aside) in [(0.1, 0.0), (0.4, 0.0), (1.0, 0.0), (2.0, 0.0), (5.0, 0.0), (0.1, 5e-4)] {
         let time = way / (radii * radius / step);
         let sets = [
             format!("duration={time}"),
             format!("integration.step={step}"),
-            format!("contacts[0].swept={swept}"),
             format!(
                 "tools.needle.path=[(t: 0, at: ({aside}, {aside}, {from})), (t: {time}, at: ({aside}, {aside}, {to}))]"
             ),
             format!("tools.needle.shape=Capsule(length: 0.02, radius: {radius})"),
             format!("materials.tissue.neo_hookean=Young(young: {young}, poisson: 0.4)"),
         ];
-        let looked_at = if swept { ", swept" } else { "" };
-        let what = format!("{radius} m, {radii} radii a step, {aside} m beside a node{looked_at}");
+        let what = format!("{radius} m, {radii} radii a step, {aside} m beside a node");
         let mut simulation = match trial.start(&sets) {
             Ok(simulation) => simulation,
             Err(error) => {
