@@ -179,8 +179,8 @@ pub struct ToolContact {
     pub friction: [f64; 2],
     /// The spring that keeps nodes out, in place of the kinematic law.
     pub spring: Option<ContactSpring>,
-    /// How far a node must go in a step against the tool (m) for its way to be looked at, and not only where it ends; 0:
-    /// it never is, for springs push by where nodes are, and a plane has no other side.
+    /// How far a node must go in a step against the tool (m) for its way to be looked at, and not only where it ends;
+    /// 0: it never is, for springs push by where nodes are, and a plane has no other side.
     pub swept: f64,
 }
 

@@ -31,10 +31,10 @@ const PRODUCTS: (usize, usize) = (20, 8);
 const FINDING_PRODUCTS: f64 = 2.0;
 /// ω² may be so many times what they show.
 const SHOWN: f64 = 1.1;
-/// Lengths change by at most so many times themselves in a step: what follows must see it come, and where the step comes
-/// and goes with what is squeezed and let go, each change makes energy of what rings close to the limit. (With 1 a thread
-/// that slips out of a grasp gained up to 18 % of its energy in some milliseconds, and 8 runs of 12 ended so; with .3 none,
-/// with .1 none either, in three times as many steps.)
+/// Lengths change by at most so many times themselves in a step: what follows must see it come, and where the step
+/// comes and goes with what is squeezed and let go, each change makes energy of what rings close to the limit. (With 1
+/// a thread that slips out of a grasp gained up to 18 % of its energy in some milliseconds, and 8 runs of 12 ended so;
+/// with .3 none, with .1 none either, in three times as many steps.)
 const FASTEST: f64 = 0.3;
 /// Strains make a step at most so many times smaller than it would be.
 const SLOWEST: f64 = 20.0;

@@ -29,8 +29,8 @@ impl Touch {
 /// Where the way of a node first meets a tool, from one place to another in its frame; `None` where it never does, or
 /// is no longer than what may be looked at by its end alone (`beyond`, m).
 ///
-/// By conservative advancement: a distance is never more than the true one, so that much of the way is free. The
-/// plane is that of the nearest place on the surface; a tool that is convex there is all behind it. Of a way that begins
+/// By conservative advancement: a distance is never more than the true one, so that much of the way is free. The plane
+/// is that of the nearest place on the surface; a tool that is convex there is all behind it. Of a way that begins
 /// inside it is the side that the node is nearest to where it begins.
 pub(super) fn first_touch(geometry: &Geometry, beyond: f64, [from, to]: [DVec3; 2]) -> Option<Plane> {
     let way = from.distance(to);

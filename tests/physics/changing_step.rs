@@ -270,9 +270,9 @@ fn what_is_crushed_quickly_springs_back_whatever_the_mesh_and_the_share_of_the_s
     assert!(broken.is_empty(), "{} of {runs}: {broken:#?}", broken.len());
 }
 
-/// A thread of six cells that a grasp draws to about twice its length slips out, and snaps back and forth undamped. Each
-/// change of the step makes energy of what rings close to the limit: with steps in which lengths changed by as much as
-/// themselves these runs ended by the balance of energy, with 6 to 18 % from nothing.
+/// A thread of six cells that a grasp draws to about twice its length slips out, and snaps back and forth undamped.
+/// Each change of the step makes energy of what rings close to the limit: with steps in which lengths changed by as
+/// much as themselves these runs ended by the balance of energy, with 6 to 18 % from nothing.
 #[test]
 fn a_thread_that_snaps_back_gains_no_energy() {
     for run in configurations().into_iter().filter(|run| run.name.starts_with("CPU")) {
