@@ -85,7 +85,8 @@ fn ends(simulation: &mut Simulation, body: &str, z: f64) -> Vec<DVec3> {
     rest.iter().zip(u).filter(|(x, _)| (x.z - z).abs() < 1e-9).map(|(_, u)| u).collect()
 }
 
-/// A strip that is drawn off from one end comes off node by node, from that end.
+/// A strip that is drawn off from one end comes off node by node, from that end: with a fifth of the step, as with any
+/// shorter one. With all of it what snaps back rings, and tears nodes in the middle, too (docs/contact.md).
 #[test]
 fn glue_is_peeled_from_the_end_that_is_pulled() {
     let text = "(duration: 1, bodies: {
@@ -96,7 +97,7 @@ fn glue_is_peeled_from_the_end_that_is_pulled() {
         constraints: [Fixed(body: \"bed\", on: Plane(normal: (0, 0, 1), at: 0)),
             Prescribed(body: \"strip\", on: Plane(normal: (1, 0, 0), at: 0), displacement: (0, 0, 0.012), curve: Smooth(end: 1))],
         attachments: [Glue(bodies: (\"strip\", \"bed\"), normal: 400, shear: 4000)],
-        output: (energies_every: 0.1))";
+        integration: (safety: 0.2), output: (energies_every: 0.1))";
     for run in cpu_and_long_gpu() {
         let mut simulation = run.start(text);
         let rest = simulation.rest_positions("strip").unwrap();
