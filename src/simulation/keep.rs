@@ -46,7 +46,7 @@ impl Simulation {
         (self.elapsed, self.metronome, self.frames) = (Duration::ZERO, Default::default(), Default::default());
         self.failure = None;
         let mut observer = self.world.resource_mut::<Observer>();
-        (observer.good_until, observer.checked_at) = (clock.time(), None);
+        observer.checked_at = None;
         observer.window.clear();
         observer.writing = Duration::ZERO;
         Ok(())

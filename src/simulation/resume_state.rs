@@ -45,6 +45,9 @@ pub(super) struct ResumeState {
     /// The hash of what they had done before this step.
     #[serde(default, skip_serializing_if = "is_default")]
     changes: u64,
+    /// Up to when there are outputs: what ends a run says so. Those of older versions lack it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    good_until: Option<f64>,
 }
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
@@ -85,6 +88,7 @@ impl Simulation {
             grabs: self.grabs.clone(),
             scene: self.changed_text(),
             changes: self.lineage.before(self.step_count()).unwrap_or_default(),
+            good_until: self.world.get_resource::<Observer>().map(|observer| observer.good_until),
         };
         let text = ron::to_string(&state).map_err(|error| SnapshotError::Senseless(error.to_string()))?;
         snapshot.set_resume_state(text);
@@ -102,6 +106,9 @@ impl Simulation {
         }
         if state.control.is_some_and(|control| !control.is_sound()) {
             return Err(senseless("its steps have no length").into());
+        }
+        if state.good_until.is_some_and(|time| !time.is_finite()) {
+            return Err(senseless("its outputs end at no time").into());
         }
         self.check_input_states(&state.inputs).map_err(senseless)?;
         self.check_port_states(&state.ports).map_err(senseless)?;
@@ -138,6 +145,7 @@ impl Simulation {
         if let (Some(follower), Some(found)) = (self.solver.follower_mut(), state.found) {
             follower.take_up(found, &mut self.world);
         }
+        self.world.resource_mut::<Observer>().good_until = state.good_until.unwrap_or_else(|| clock.time());
         if let (Some(control), Some(state)) = (self.solver.step_control(), state.control) {
             control.take_up(state);
         }
