@@ -165,7 +165,8 @@ struct Surface {
     /// Bodies with their numbers, in the order of entities.
     numbers: Vec<(Entity, usize)>,
     // what a step finds, kept so that the next one need not ask for memory
-    found: Vec<faced::Found>,
+    /// Places in the lists of points that may be near something.
+    awake: Vec<u32>,
     kept_by_task: Vec<crate::contact::Kept>,
     reaches: Vec<f64>,
     gathered: gather::Gathered,
@@ -340,9 +341,9 @@ fn step<T: Scalar>(
     match &of.0.springs {
         Some(springs) if matches!(springs.forces, SpringForces::Sought | SpringForces::Stepped) => {
             contacts.surface.pairs.clear();
-            let Some((is_near, mut bodies)) = motion::search::<T>(contacts, of, bodies)? else { return Ok(()) };
-            if is_near {
-                solved::pair(contacts, of.0, &mut bodies);
+            let Some((near, mut bodies)) = motion::search::<T>(contacts, of, bodies)? else { return Ok(()) };
+            if let Some(reach) = near {
+                solved::pair(contacts, of, reach, &bodies);
             }
             if springs.forces == SpringForces::Stepped {
                 solved::press(contacts, (of.0, springs, of.1), &mut bodies);
@@ -357,13 +358,13 @@ fn step<T: Scalar>(
         }
         None => match motion::search::<T>(contacts, of, bodies)? {
             None => {}
-            Some((false, mut bodies)) => {
+            Some((None, mut bodies)) => {
                 meet::release(&mut contacts.surface, &mut bodies);
                 meet::forget(contacts, &[], &mut bodies);
             }
-            Some((true, mut bodies)) => {
-                meet::meet(contacts, of, &mut bodies, (signals, gain));
-                contacts.surface.figures.contacts += contacts.surface.gathered.set.contacts.len() as u64;
+            Some((Some(reach), mut bodies)) => {
+                meet::meet(contacts, (of, reach), &mut bodies, (signals, gain));
+                contacts.surface.figures.contacts += contacts.surface.gathered.set.count() as u64;
             }
         },
     }

@@ -17,8 +17,8 @@ pub(super) const NEARER: f64 = 1.0 - 1e-6;
 pub struct Listed<'a> {
     /// Their numbers, ascending.
     pub triangles: &'a [u32],
-    /// How far each was (m).
-    pub distances: &'a [f64],
+    /// How far each was at least (m).
+    pub distances: &'a [f32],
     /// How much nearer anything can have come since (m).
     pub nearer: f64,
     /// Who is farther than this (m) is in nobody's way.
@@ -28,7 +28,12 @@ pub struct Listed<'a> {
 impl Listed<'_> {
     /// Whether a triangle cannot have come near enough.
     pub(super) fn is_far(&self, place: usize) -> bool {
-        self.distances[place] > self.farthest + self.nearer
+        self.distance(place) > self.farthest + self.nearer
+    }
+
+    /// How far a triangle was at least (m).
+    pub(super) fn distance(&self, place: usize) -> f64 {
+        f64::from(self.distances[place])
     }
 }
 
@@ -151,7 +156,7 @@ impl<'a, 'k> Candidates<'a, 'k> {
     pub(super) fn stays_away(&self, place: usize, reach: f64, stays: Stays) -> bool {
         let Stays { moved, reach: more } = stays;
         if self.listed.is_far(place) {
-            return self.listed.distances[place] > self.listed.farthest + more + self.listed.nearer + moved;
+            return self.listed.distance(place) > self.listed.farthest + more + self.listed.nearer + moved;
         }
         let triangle = self.listed.triangles[place];
         let &(found, distance) = self.nearest(place);

@@ -178,7 +178,7 @@ impl Surfaces {
                 candidates.find_listed();
                 let away = |place: usize| candidates.stays_away(place, reach(listed.triangles[place]), stays);
                 let nearest = |place: usize| match listed.is_far(place) {
-                    true => listed.distances[place],
+                    true => listed.distance(place),
                     false => candidates.nearest(place).1 - listed.nearer,
                 };
                 around.clear();

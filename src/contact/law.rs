@@ -1,14 +1,13 @@
 //! The law of contact between bodies: the impulses that keep predicted steps from ending inside one another.
 
+mod of_nodes;
 mod tasks;
 
 use super::parts::Parts;
 use crate::backend::cpu::Cpu;
 use glam::{DVec3, DVec4};
+use of_nodes::OfNodes;
 use tasks::{Begin, Correct, Correction, Forces, Note, Push};
-
-/// Contacts and nodes that a task works on.
-const CONTACTS_A_TASK: usize = 256;
 
 /// So many contacts are worth the threads; fewer are added up one after the other.
 const WORTH_SHARING: usize = 1024;
@@ -44,6 +43,11 @@ pub struct Contact {
     pub slides: bool,
     /// Whether a spring presses: by the gap alone, whatever the step that is predicted.
     pub springs: bool,
+    /// What whoever made it knows of it: the number of the point, whether the face is its first, and how far it was
+    /// outside (m).
+    pub point: u32,
+    pub is_first: bool,
+    pub outside: f64,
     /// How far it yields to a force (m/N), with the shares of its nodes.
     yields: f64,
     /// The same along the surface, and not less.
@@ -67,6 +71,9 @@ impl Contact {
             work: 0.0,
             slides: false,
             springs: false,
+            point: 0,
+            is_first: false,
+            outside: gap,
             yields: 0.0,
             yields_along: 0.0,
         }
@@ -166,8 +173,8 @@ pub struct Beginning {
 /// Contacts that act in the same step, and the nodes they act on.
 #[derive(Clone, Debug, Default)]
 pub struct ContactSet {
-    /// The contacts. Those that [`solve`](Self::solve) is to find forces of are [added](Self::add).
-    pub contacts: Vec<Contact>,
+    /// The contacts, in order: a batch for each task that works on them, some of them empty.
+    pub batches: Vec<Vec<Contact>>,
     /// The nodes' next steps (m): as they would be, and after [`solve`](Self::solve) as they will be. Of each vector of
     /// a node the fourth number is 0: so it fills a register.
     pub steps: Vec<DVec4>,
@@ -181,35 +188,44 @@ pub struct ContactSet {
     shares: Vec<f64>,
     /// What a sweep changes of each contact's force (N).
     changes: Vec<DVec3>,
-    /// Where each node's contacts begin in the next list; empty where contacts are too few for threads.
-    starts: Vec<u32>,
-    /// Contacts of each node, ascending, with its weights.
-    of_nodes: Vec<(u32, f64)>,
+    /// Contacts of each node; of none where they are too few for threads.
+    of_nodes: OfNodes,
 }
 
 impl ContactSet {
-    /// Forgets all contacts.
-    pub fn clear(&mut self) {
-        self.contacts.clear();
-        self.shares.clear();
+    /// Forgets all contacts, and has so many batches at least from now on.
+    pub fn begin(&mut self, batches: usize) {
+        self.batches.resize_with(batches.max(self.batches.len()), Vec::new);
+        self.batches.iter_mut().for_each(Vec::clear);
     }
 
-    /// Adds a contact of nodes whose steps are there, and splits their mass.
-    #[inline]
+    /// Adds a contact to the last batch.
     pub fn add(&mut self, contact: Contact) {
-        if self.shares.len() < self.steps.len() {
-            self.shares.resize(self.steps.len(), 0.0);
+        if self.batches.is_empty() {
+            self.batches.push(Vec::new());
         }
-        contact.parts.iter().for_each(|(node, weight)| self.shares[node] += weight.abs());
-        self.contacts.push(contact);
+        if let Some(last) = self.batches.last_mut() {
+            last.push(contact);
+        }
+    }
+
+    /// All contacts, in order.
+    pub fn contacts(&self) -> impl Iterator<Item = &Contact> {
+        self.batches.iter().flatten()
+    }
+
+    /// How many contacts there are.
+    pub fn count(&self) -> usize {
+        self.batches.iter().map(Vec::len).sum()
     }
 
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
-        let Self { contacts, steps, earlier, responses, forces, shares, changes, starts, of_nodes } = self;
-        let of_contacts = size_of_val(&contacts[..]) + size_of_val(&changes[..]) + size_of_val(&of_nodes[..]);
+        let Self { batches, steps, earlier, responses, forces, shares, changes, of_nodes } = self;
+        let contacts: usize = batches.iter().map(|contacts| size_of_val(&contacts[..])).sum();
+        let of_contacts = contacts + size_of_val(&changes[..]) + of_nodes.bytes();
         let vectors = [steps, earlier, responses, forces].map(|all| size_of_val(&all[..]));
-        of_contacts + vectors.iter().sum::<usize>() + size_of_val(&shares[..]) + size_of_val(&starts[..])
+        of_contacts + vectors.iter().sum::<usize>() + size_of_val(&shares[..])
     }
 
     /// Finds the forces.
@@ -222,15 +238,19 @@ impl ContactSet {
     /// Friction is the return mapping of an elastic slip that each contact keeps: it sticks without creep, and slides
     /// with exactly the largest force.
     pub fn solve(&mut self, sweeps: usize, cpu: &Cpu) {
-        if self.contacts.is_empty() {
+        if self.count() == 0 {
             return clear_forces(&mut self.forces, self.steps.len());
         }
-        self.list_nodes(cpu);
+        match cpu.threads() > 1 && self.count() >= WORTH_SHARING {
+            true => self.of_nodes.list(&self.batches, self.steps.len()),
+            false => self.of_nodes.clear(),
+        }
+        self.share_masses(cpu);
         let (shares, responses) = (std::mem::take(&mut self.shares), std::mem::take(&mut self.responses));
-        let rub = self.contacts.iter().any(|contact| contact.friction > 0.0);
+        let rub = self.contacts().any(|contact| contact.friction > 0.0);
         for sweep in 0..sweeps.max(1) {
             match sweep {
-                0 => self.begin(&shares, &responses, cpu),
+                0 => self.press_first(&shares, &responses, cpu),
                 _ => self.change(Correction::Pressing, &responses, cpu),
             }
             if rub {
@@ -238,26 +258,29 @@ impl ContactSet {
             }
         }
         (self.shares, self.responses) = (shares, responses);
-        let Self { contacts, steps, earlier, forces, starts, .. } = self;
-        if starts.is_empty() {
-            clear_forces(forces, steps.len());
-            return cpu.dispatch(Note { contacts, steps, earlier, forces });
+        let Self { batches, steps, earlier, forces, changes, of_nodes, .. } = self;
+        clear_forces(forces, steps.len());
+        if of_nodes.is_empty() {
+            let notes = |contacts: &mut Vec<Contact>| cpu.dispatch(Note { contacts, steps, earlier, forces });
+            return batches.iter_mut().for_each(notes);
         }
-        let tasks = contacts.chunks_mut(CONTACTS_A_TASK);
-        cpu.for_each(tasks, |contacts| cpu.dispatch(Note { contacts, steps, earlier, forces: &mut [] }));
-        self.find_forces(cpu);
+        cpu.for_each(of_batches(batches, changes), |(contacts, changes)| {
+            cpu.dispatch(Note { contacts: &mut *contacts, steps, earlier, forces: &mut [] });
+            contacts.iter().zip(changes).for_each(|(contact, change)| *change = contact.force());
+        });
+        of_nodes.add(changes, forces, cpu, |_, force| force);
     }
 
     /// Finds what contacts do to nodes, in the order of contacts.
     pub fn find_forces(&mut self, cpu: &Cpu) {
-        let Self { contacts, steps, forces, .. } = self;
+        let Self { batches, steps, forces, .. } = self;
         clear_forces(forces, steps.len());
-        cpu.dispatch(Forces { contacts, forces });
+        batches.iter().for_each(|contacts| cpu.dispatch(Forces { contacts, forces }));
     }
 
     /// What its contacts begin the step with.
     pub fn beginnings(&self) -> impl Iterator<Item = Beginning> + '_ {
-        self.contacts.iter().map(|&Contact { step, slip, .. }| Beginning { step, slip })
+        self.contacts().map(|&Contact { step, slip, .. }| Beginning { step, slip })
     }
 
     /// Kinetic energy (J) that one sweep has given beyond what it can, from what contacts began with; 0 where it has
@@ -268,7 +291,7 @@ impl ContactSet {
     /// what a spring would hold that is so stiff as to push it out in a step.
     pub fn beyond_bound(&self, before: &[Beginning]) -> f64 {
         let (mut beyond, mut size) = (0.0, 0.0);
-        for (contact, start) in self.contacts.iter().zip(before).filter(|(of, _)| of.pressing > 0.0) {
+        for (contact, start) in self.contacts().zip(before).filter(|(of, _)| of.pressing > 0.0) {
             let given = contact.force().dot(0.5 * (start.step + contact.step));
             let along = contact.normal.dot(start.step);
             let [inside, taken] = [contact.gap, along].map(|length| length * length / (2.0 * contact.yields));
@@ -281,64 +304,58 @@ impl ContactSet {
         if beyond <= ROUNDING * size { 0.0 } else { beyond }
     }
 
-    /// Lists contacts by node where there are so many that threads add up what they do: in the order in which one
-    /// thread would, so that the bits are the same.
-    fn list_nodes(&mut self, cpu: &Cpu) {
-        let Self { contacts, steps, starts, of_nodes, .. } = self;
-        starts.clear();
-        if cpu.threads() == 1 || contacts.len() < WORTH_SHARING {
-            return;
+    /// Splits the mass of each node among its contacts.
+    fn share_masses(&mut self, cpu: &Cpu) {
+        let Self { batches, steps, shares, of_nodes, .. } = self;
+        shares.clear();
+        shares.resize(steps.len(), 0.0);
+        if !of_nodes.is_empty() {
+            return of_nodes.share(shares, cpu);
         }
-        starts.resize(steps.len() + 1, 0);
-        contacts.iter().for_each(|contact| contact.parts.iter().for_each(|(node, _)| starts[node + 1] += 1));
-        (0..steps.len()).for_each(|node| starts[node + 1] += starts[node]);
-        of_nodes.clear();
-        of_nodes.resize(starts[steps.len()] as usize, (0, 0.0));
-        // the start of each node runs to its end, which is the next one's start
-        for (number, contact) in (0..).zip(&*contacts) {
-            for (node, weight) in contact.parts.iter() {
-                of_nodes[starts[node] as usize] = (number, weight);
-                starts[node] += 1;
-            }
+        for (node, weight) in batches.iter().flatten().flat_map(|contact| contact.parts.iter()) {
+            shares[node] += weight.abs();
         }
-        starts.rotate_right(1);
-        starts[0] = 0;
     }
 
     /// Finds normal forces, and corrects the steps of nodes by that. Steps against faces are known, so that of one
     /// thread each contact is gone to once.
-    fn begin(&mut self, shares: &[f64], responses: &[DVec4], cpu: &Cpu) {
-        if !self.starts.is_empty() {
+    fn press_first(&mut self, shares: &[f64], responses: &[DVec4], cpu: &Cpu) {
+        if !self.of_nodes.is_empty() {
             return self.change(Correction::First { shares, responses }, responses, cpu);
         }
-        let Self { contacts, steps, .. } = self;
-        cpu.dispatch(Begin { contacts, shares, responses, steps });
+        let Self { batches, steps, .. } = self;
+        batches.iter_mut().for_each(|contacts| cpu.dispatch(Begin { contacts, shares, responses, steps }));
     }
 
     /// Corrects forces, and the steps of nodes by that.
     fn change(&mut self, correction: Correction<'_>, responses: &[DVec4], cpu: &Cpu) {
-        let Self { contacts, steps, changes, starts, of_nodes, .. } = self;
-        changes.resize(contacts.len(), DVec3::ZERO);
+        let count = self.count();
+        let Self { batches, steps, changes, of_nodes, .. } = self;
+        changes.resize(count, DVec3::ZERO);
         let now = &*steps;
-        let tasks = contacts.chunks_mut(CONTACTS_A_TASK).zip(changes.chunks_mut(CONTACTS_A_TASK));
-        cpu.for_each(tasks, |(contacts, changes)| {
+        cpu.for_each(of_batches(batches, changes), |(contacts, changes)| {
             cpu.dispatch(Correct { correction, contacts, changes, steps: now });
         });
-        let changes = &*changes;
-        if starts.is_empty() {
-            return cpu.dispatch(Push { contacts, changes, responses, steps });
+        if of_nodes.is_empty() {
+            let push = |(contacts, changes): (&mut [Contact], &mut [DVec3])| {
+                cpu.dispatch(Push { contacts, changes, responses, steps });
+            };
+            return of_batches(batches, changes).for_each(push);
         }
-        cpu.for_each(steps.chunks_mut(CONTACTS_A_TASK).enumerate(), |(task, steps)| {
-            for (node, step) in (task * CONTACTS_A_TASK..).zip(steps) {
-                for &(contact, weight) in &of_nodes[starts[node] as usize..starts[node + 1] as usize] {
-                    let change = changes[contact as usize];
-                    if change != DVec3::ZERO {
-                        *step += responses[node] * (change * weight).extend(0.0);
-                    }
-                }
-            }
-        });
+        of_nodes.add(changes, steps, cpu, |node, change| responses[node] * change);
     }
+}
+
+/// Batches with what each contact of theirs has of all.
+fn of_batches<'a>(
+    batches: &'a mut [Vec<Contact>],
+    mut left: &'a mut [DVec3],
+) -> impl Iterator<Item = (&'a mut [Contact], &'a mut [DVec3])> {
+    batches.iter_mut().map(move |contacts| {
+        let (of_batch, others) = std::mem::take(&mut left).split_at_mut(contacts.len());
+        left = others;
+        (&mut contacts[..], of_batch)
+    })
 }
 
 /// Forces on so many nodes: none.

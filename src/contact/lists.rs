@@ -20,8 +20,8 @@ pub struct Lists {
     pub starts: Vec<u32>,
     /// Ascending for each point.
     pub triangles: Vec<u32>,
-    /// How far each is from the point (m).
-    pub distances: Vec<f64>,
+    /// How far each is from the point at least (m): rounded down, so that nobody is taken to be farther than it is.
+    pub distances: Vec<f32>,
     /// All triangles that were so near to a point are in its list (m); more than was asked for where there are none.
     pub radius: f64,
 }
@@ -46,7 +46,7 @@ impl Lists {
     }
 
     /// How far each of these was (m).
-    pub fn distances(&self, place: usize) -> &[f64] {
+    pub fn distances(&self, place: usize) -> &[f32] {
         &self.distances[self.range(place)]
     }
 
@@ -102,7 +102,7 @@ impl Lists {
                 lists.starts.push(lists.starts[lists.starts.len() - 1] + count);
             }
             lists.triangles.extend(found.iter().map(|(triangle, _)| *triangle));
-            lists.distances.extend(found.into_iter().map(|(_, distance)| distance));
+            lists.distances.extend(found.into_iter().map(|(_, distance)| (distance as f32).next_down()));
         }
         if lists.points.is_empty() {
             lists.radius = finder.apart_by(trees).max(radius);

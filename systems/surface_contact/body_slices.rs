@@ -64,7 +64,13 @@ pub(super) fn slices<'a, T: Scalar>(
 }
 
 impl<T: Scalar> BodySlices<'_, T> {
-    /// The numbers of a point, to write.
+    /// The numbers of a point.
+    pub fn kept(&self, at: Kept) -> &[T] {
+        let all = if at.of_face { &*self.face_touch } else { &*self.touch };
+        &all[at.first..at.first + MEETING_NUMBERS]
+    }
+
+    /// The same, to write.
     pub fn kept_mut(&mut self, at: Kept) -> &mut [T] {
         let all = if at.of_face { &mut *self.face_touch } else { &mut *self.touch };
         &mut all[at.first..at.first + MEETING_NUMBERS]

@@ -12,22 +12,16 @@ const POINTS_A_TASK: usize = 128;
 /// else few are asked for.
 const KNOWN: usize = 8;
 
-/// What a point faces.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Found {
-    /// Its place in the lists.
-    pub place: u32,
-    pub faced: Faced,
-}
-
-/// Some points that are awake, and what is kept of these in the lists and of those between.
-struct Awake<'a> {
-    found: &'a mut [Found],
+/// Some points that are awake, by their places in the lists, what is kept there of these and of those between, and what
+/// is made of what they face.
+struct Awake<'a, M> {
+    places: &'a [u32],
     /// The first place of the next two.
     first: usize,
     shortlists: &'a mut [Shortlist],
     wake: &'a mut [f64],
     kept: &'a mut Kept,
+    made: M,
 }
 
 /// What is the same for all points in a step.
@@ -49,32 +43,37 @@ struct Looking<'a> {
 /// any.
 pub(super) fn wake(contacts: &mut SurfaceContacts, reach: f64) -> bool {
     let farthest = contacts.farthest(reach) + contacts.surface.motion.lists.moved;
-    let Surface { wake, first_wake, found, .. } = &mut contacts.surface;
-    let mut awake = 0;
+    let Surface { wake, first_wake, awake, .. } = &mut contacts.surface;
+    awake.clear();
     *first_wake = f64::INFINITY;
     for (place, &wake) in (0..).zip(&*wake) {
-        if farthest < wake {
-            *first_wake = first_wake.min(wake);
-            continue;
+        match farthest < wake {
+            true => *first_wake = first_wake.min(wake),
+            false => awake.push(place),
         }
-        // what was found in the last step is written over
-        match found.get_mut(awake) {
-            Some(found) => found.place = place,
-            None => found.push(Found { place, faced: Faced::NOTHING }),
-        }
-        awake += 1;
     }
-    found.truncate(awake);
-    awake > 0
+    !awake.is_empty()
 }
 
-/// Finds what those face that are awake.
-pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
+/// How many tasks look at those that are awake.
+pub(super) fn tasks(contacts: &SurfaceContacts) -> usize {
+    contacts.surface.awake.len().div_ceil(POINTS_A_TASK)
+}
+
+/// Finds what those face that are awake, and tells it point by point, by their numbers and in their order, to whom each
+/// task has been given to make something of it.
+pub(super) fn face<M: Send>(
+    contacts: &mut SurfaceContacts,
+    reach: f64,
+    cpu: &Cpu,
+    mut made: impl Iterator<Item = M>,
+    tell: impl Fn(&SurfaceContacts, u32, &Faced, &mut M) + Sync + Send,
+) {
     let [nearer, lately] = [&contacts.surface.motion.lists, &contacts.surface.motion.shortlists].map(|mark| mark.moved);
     let surface = &mut contacts.surface;
-    let mut found = std::mem::take(&mut surface.found);
-    let unknown = found.iter().filter(|found| !surface.shortlists[found.place as usize].is_known()).count();
-    let has_normals = KNOWN * unknown > found.len() || !surface.crossings.near.is_empty();
+    let awake = std::mem::take(&mut surface.awake);
+    let unknown = awake.iter().filter(|&&place| !surface.shortlists[place as usize].is_known()).count();
+    let has_normals = KNOWN * unknown > awake.len() || !surface.crossings.near.is_empty();
     if has_normals {
         update_normals(surface, cpu);
     }
@@ -82,7 +81,7 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
     let mut reaches = std::mem::take(&mut surface.reaches);
     let mut shortlists = std::mem::take(&mut surface.shortlists);
     let mut wake = std::mem::take(&mut surface.wake);
-    kept.resize_with(kept.len().max(found.len().div_ceil(POINTS_A_TASK)), Kept::default);
+    kept.resize_with(kept.len().max(awake.len().div_ceil(POINTS_A_TASK)), Kept::default);
     reaches.clear();
     let meetings = contacts.meetings.iter();
     reaches.extend(meetings.map(|meeting| reach + meeting.map_or(0.0, |meeting| meeting.thickness)));
@@ -93,40 +92,43 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
     let now = Placed { places: &surface.places, normals };
     let looking = Looking { contacts, now, reaches: &reaches, nearer, farthest, stays };
     let mut left = (0, &mut shortlists[..], &mut wake[..]);
-    let tasks = found.chunks_mut(POINTS_A_TASK).zip(&mut kept).map(|(found, kept)| {
+    let chunks = awake.chunks(POINTS_A_TASK).zip(&mut kept);
+    let tasks = chunks.zip(&mut made).map(|((places, kept), made)| {
         let (first, shortlists, wake) = std::mem::take(&mut left);
         // places ascend
-        let end = found.last().map_or(first, |last| last.place as usize + 1);
+        let end = places.last().map_or(first, |&last| last as usize + 1);
         let (shortlists, shortlists_left) = shortlists.split_at_mut(end - first);
         let (wake, wake_left) = wake.split_at_mut(end - first);
         left = (end, shortlists_left, wake_left);
-        Awake { found, first, shortlists, wake, kept }
+        Awake { places, first, shortlists, wake, kept, made }
     });
-    cpu.for_each(tasks, |awake| looking.face(awake));
+    cpu.for_each(tasks, |awake| looking.face(awake, &tell));
     let surface = &mut contacts.surface;
-    let first = found.iter().map(|found| found.faced.wakes).fold(surface.first_wake, f64::min);
-    (surface.found, surface.kept_by_task, surface.reaches) = (found, kept, reaches);
+    let first = awake.iter().map(|&place| wake[place as usize]).fold(surface.first_wake, f64::min);
+    (surface.awake, surface.kept_by_task, surface.reaches) = (awake, kept, reaches);
     (surface.shortlists, surface.wake, surface.first_wake) = (shortlists, wake, first);
 }
 
 impl Looking<'_> {
     /// Finds what some points face.
-    fn face(&self, Awake { found, first, shortlists, wake, kept }: Awake<'_>) {
+    fn face<M>(&self, of: Awake<'_, M>, tell: &impl Fn(&SurfaceContacts, u32, &Faced, &mut M)) {
+        let Awake { places, first, shortlists, wake, kept, mut made } = of;
         let Looking { contacts, now, .. } = *self;
         let (surface, edge, mut own) = (&contacts.surface, contacts.edge, Own::default());
-        for Found { place, faced } in found {
-            let place = *place as usize;
-            let (point, short) =
-                (&surface.points[surface.lists.points[place] as usize], &mut shortlists[place - first]);
+        let mut faced = Faced::NOTHING;
+        for &place in places {
+            let place = place as usize;
+            let number = surface.lists.points[place];
+            let (point, short) = (&surface.points[number as usize], &mut shortlists[place - first]);
             let of_point = &self.reaches[point.body as usize * contacts.bodies.len()..];
             let reach = |triangle: u32| of_point[surface.triangles.bodies[triangle as usize] as usize];
             let at_a_glance = (self.nearer, reach, edge);
-            let seen = (&mut *faced, &mut own);
+            let seen = (&mut faced, &mut own);
             if !surface.triangles.faced_at_a_glance((now, point, short), at_a_glance, seen) {
                 let (triangles, distances) = (surface.lists.triangles(place), surface.lists.distances(place));
                 let listed = Listed { triangles, distances, nearer: self.nearer, farthest: self.farthest };
                 let moved = surface.neighbourhoods.stays(place) + self.stays.moved;
-                let (stays, kept) = (Stays { moved, ..self.stays }, (&mut *faced, &mut *kept));
+                let (stays, kept) = (Stays { moved, ..self.stays }, (&mut faced, &mut *kept));
                 surface.triangles.faced((now, point), listed, (reach, edge), (short, stays), kept);
             }
             if point.triangle.is_some() {
@@ -134,6 +136,7 @@ impl Looking<'_> {
                 both.into_iter().flatten().for_each(|facing| facing.gap = surface.gap_of_facet(point, facing));
             }
             wake[place - first] = faced.wakes;
+            tell(contacts, number, &faced, &mut made);
         }
     }
 }

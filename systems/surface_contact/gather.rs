@@ -1,12 +1,12 @@
 //! The contacts of a step: which points end too near what they face, and where nodes would go.
 
 use super::body_slices::{BodySlices, set_vector, vector_at};
-use super::faced::Found;
+use super::faced::face;
 use super::meet::{FACES, FREE, STICKS};
-use super::{Meeting, Surface, SurfaceContacts};
+use super::{Meeting, Surface, SurfaceContacts, crossings};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
-use crate::contact::{Beginning, Contact, ContactSet, Parts};
+use crate::contact::{Beginning, Contact, ContactSet, Faced, Parts};
 use crate::math::Scalar;
 use glam::{DVec3, DVec4};
 
@@ -20,14 +20,14 @@ const SHARES: f64 = 1e-3;
 /// Nodes that a task foresees.
 const NODES_A_TASK: usize = 1024;
 
-/// A contact of the set.
+/// What a point that faces something is noted to do.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Met {
+pub(super) struct Seen {
     pub point: u32,
-    /// Whether it is the first face of the point: only there slip is kept.
-    pub first: bool,
-    /// How far it was outside (m).
-    pub gap: f64,
+    /// How far it is outside of its first face (m).
+    pub outside: f64,
+    /// How deep it may be inside (m).
+    pub allowed: f64,
 }
 
 /// What is the same for all points in a step.
@@ -44,7 +44,8 @@ pub(super) struct Gathered {
     pub set: ContactSet,
     /// What its contacts begin the step with, where somebody looks afterwards.
     pub before: Vec<Beginning>,
-    pub met: Vec<Met>,
+    /// Points that face something, in batches as contacts are.
+    seen: Vec<Vec<Seen>>,
     /// Place of each node of the surfaces in the set, of those that are near something.
     pub slots: Vec<u32>,
     /// Points that face something.
@@ -54,14 +55,17 @@ pub(super) struct Gathered {
 impl Gathered {
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
-        let Self { set, before, met, slots, facing } = self;
-        let of_points = size_of_val(&met[..]) + size_of_val(&facing[..]);
+        let Self { set, before, seen, slots, facing } = self;
+        let seen: usize = seen.iter().map(|seen| size_of_val(&seen[..])).sum();
+        let of_points = seen + size_of_val(&facing[..]);
         set.bytes() + size_of_val(&before[..]) + of_points + size_of_val(&slots[..])
     }
 
-    pub fn clear(&mut self) {
-        self.set.clear();
-        self.met.clear();
+    /// Forgets the last step, and has so many batches at least from now on.
+    pub fn begin(&mut self, batches: usize) {
+        self.set.begin(batches);
+        self.seen.resize_with(batches.max(self.seen.len()), Vec::new);
+        self.seen.iter_mut().for_each(Vec::clear);
         self.facing.clear();
     }
 
@@ -90,36 +94,52 @@ impl Gathered {
             }
         });
     }
+}
 
+/// What is noted in a contact of who meets.
+struct Met {
+    point: u32,
+    is_first: bool,
+    outside: f64,
+}
+
+/// Nodes whose steps are foreseen.
+struct Nodes<'a> {
+    slots: &'a [u32],
+    steps: &'a [DVec4],
+    earlier: &'a [DVec4],
+}
+
+impl Nodes<'_> {
     /// Adds a contact of these nodes with weights, along a normal with a gap (m) and with friction and slip, if it ends
     /// nearer than `within` (m): as far outside (m) as that; with a spring, which asks for nothing else, as far as it
     /// is.
     #[inline]
     fn add(
-        &mut self,
+        &self,
+        batch: &mut Vec<Contact>,
         [of_point, of_face]: [(&[u32], &[f64]); 2],
         ((normal, gap), resists): ((DVec3, f64), (f64, DVec3)),
         (spring, outside, within): (Option<ContactSpring>, f64, f64),
-        met: Met,
+        of: Met,
     ) {
-        let Self { set, slots, .. } = self;
         let mut parts = Parts::default();
         for (&node, &weight) in of_point.0.iter().zip(of_point.1) {
-            parts.add(slots[node as usize], weight);
+            parts.add(self.slots[node as usize], weight);
         }
         for (&node, &weight) in of_face.0.iter().zip(of_face.1) {
-            parts.add(slots[node as usize], -weight);
+            parts.add(self.slots[node as usize], -weight);
         }
-        let step = parts.step(&set.steps);
+        let step = parts.step(self.steps);
         let (gap, ends) = match spring {
             None => (gap, gap + normal.dot(step)),
-            Some(spring) => (spring.gap(outside, normal.dot(parts.step(&set.earlier))), outside),
+            Some(spring) => (spring.gap(outside, normal.dot(parts.step(self.earlier))), outside),
         };
         if ends < within {
             let mut contact = Contact::new(parts, (normal, gap, step), resists);
-            contact.springs = spring.is_some();
-            set.add(contact);
-            self.met.push(met);
+            (contact.springs, contact.point) = (spring.is_some(), of.point);
+            (contact.is_first, contact.outside) = (of.is_first, of.outside);
+            batch.push(contact);
         }
     }
 }
@@ -137,39 +157,72 @@ pub(super) fn allowed<T: Scalar>(touch: &[T], gap: f64, in_step: &InStep) -> f64
     (touch[3].to_f64() + (gap - expected).min(0.0) + in_step.settling).min(0.0).max(gap.min(0.0))
 }
 
-/// The contacts of a step, of nodes whose steps are foreseen; notes what points face, and how far they are outside of
-/// it.
+/// Finds what points face, and the contacts of a step, of nodes whose steps are foreseen; notes what points face, and
+/// how far they are outside of it.
 pub(super) fn gather<T: Scalar>(
-    contacts: &SurfaceContacts,
+    contacts: &mut SurfaceContacts,
     gathered: &mut Gathered,
-    found: &[Found],
-    in_step: &InStep,
+    (in_step, reach, cpu): (&InStep, f64, &Cpu),
     bodies: &mut [BodySlices<'_, T>],
 ) {
-    let surface = &contacts.surface;
-    for Found { place, faced } in found {
-        let number = surface.lists.points[*place as usize];
-        let point = &surface.points[number as usize];
-        let kept = contacts.kept(number);
+    let Gathered { set: ContactSet { batches, steps, earlier, .. }, slots, seen, facing, .. } = gathered;
+    let nodes = Nodes { slots, steps, earlier };
+    let of_bodies = &*bodies;
+    face(contacts, reach, cpu, batches.iter_mut().zip(&mut *seen), |contacts, point, faced, (batch, seen)| {
+        let Some(first) = &faced.first else { return };
+        let kept = contacts.kept(point);
+        let touch = of_bodies[kept.body].kept(kept);
+        let outside = contacts.gap(&contacts.surface.points[point as usize], first);
+        // as it is kept
+        let allowed = T::from_f64(allowed(touch, outside, in_step)).to_f64();
+        seen.push(Seen { point, outside, allowed });
+        nodes.meet(contacts, (faced, touch), &seen[seen.len() - 1], in_step, batch);
+    });
+    for &Seen { point, outside, allowed } in seen.iter().flatten() {
+        let kept = contacts.kept(point);
         let touch = bodies[kept.body].kept_mut(kept);
-        let Some(first) = &faced.first else {
-            if touch[3] != T::default() {
-                touch[3] = T::default();
-            }
+        set_vector(touch, 0, DVec3::ZERO);
+        touch[3..6].iter_mut().zip([allowed, FACES, outside]).for_each(|(of, number)| *of = T::from_f64(number));
+        facing.push(point);
+    }
+    crossings::find(contacts, reach);
+    let (surface, Some(last)) = (&contacts.surface, batches.last_mut()) else { return };
+    for (pair, crossing) in &surface.crossings.found {
+        let [one, other] = pair.map(|edge| surface.crossings.edges[edge as usize]);
+        let Some(Meeting { friction, thickness, spring, .. }) = contacts.crossing(one.body, other.body) else {
             continue;
         };
-        let outside = contacts.gap(point, first);
-        let allowed = allowed(touch, outside, in_step);
-        if allowed != touch[3].to_f64() {
-            touch[3] = T::from_f64(allowed);
-        }
+        let outside = crossing.gap - thickness;
+        // nothing is known of how it got there, nor of how it slipped
+        let gap = outside.max(-in_step.settling);
+        let [of_one, of_other] = &crossing.weights;
+        // nodes are the first of the points
+        let met = Met { point: one.nodes[0], is_first: false, outside };
+        nodes.add(
+            last,
+            [(&one.nodes, of_one), (&other.nodes, of_other)],
+            ((crossing.normal, gap), (friction[1], DVec3::ZERO)),
+            (spring, outside, 0.0),
+            met,
+        );
+    }
+}
+
+impl Nodes<'_> {
+    /// The contacts of a point, with what is kept of it.
+    fn meet<T: Scalar>(
+        &self,
+        contacts: &SurfaceContacts,
+        (faced, touch): (&Faced, &[T]),
+        &Seen { point: number, outside, allowed }: &Seen,
+        in_step: &InStep,
+        batch: &mut Vec<Contact>,
+    ) {
+        let surface = &contacts.surface;
+        let point = &surface.points[number as usize];
         let (stuck, slip) = (touch[4].to_f64() == STICKS, vector_at(touch, 0));
-        set_vector(touch, 0, DVec3::ZERO);
-        (touch[4], touch[5]) = (T::from_f64(FACES), T::from_f64(outside));
-        gathered.facing.push(number);
-        let allowed = touch[3].to_f64();
-        let second = faced.second.as_ref().map(|facing| (facing, false));
-        for (facing, is_first) in std::iter::once((first, true)).chain(second) {
+        let both = [(&faced.first, true), (&faced.second, false)];
+        for (facing, is_first) in both.into_iter().filter_map(|(facing, is_first)| Some((facing.as_ref()?, is_first))) {
             let body = surface.triangles.bodies[facing.triangle as usize];
             let Some(Meeting { friction, spring, .. }) = contacts.meeting(point.body, body) else { continue };
             let friction = if stuck { friction[0] } else { friction[1] };
@@ -183,32 +236,14 @@ pub(super) fn gather<T: Scalar>(
                 false => outside.max(-in_step.settling),
             };
             let (corners, weights) = surface.corners_of(point, facing);
-            let of_face = (&corners[..], &weights[..]);
             let within = if point.triangle.is_some() { SHARES * contacts.edge } else { 0.0 };
-            gathered.add(
-                [point.slices(), of_face],
+            self.add(
+                batch,
+                [point.slices(), (&corners[..], &weights[..])],
                 ((facing.normal, gap), (friction, slip)),
                 (spring, outside - allowed, within),
-                Met { point: number, first: is_first, gap: outside },
+                Met { point: number, is_first, outside },
             );
         }
-    }
-    for (pair, crossing) in &surface.crossings.found {
-        let [one, other] = pair.map(|edge| surface.crossings.edges[edge as usize]);
-        let Some(Meeting { friction, thickness, spring, .. }) = contacts.crossing(one.body, other.body) else {
-            continue;
-        };
-        let outside = crossing.gap - thickness;
-        // nothing is known of how it got there, nor of how it slipped
-        let gap = outside.max(-in_step.settling);
-        let [of_one, of_other] = &crossing.weights;
-        // nodes are the first of the points
-        let met = Met { point: one.nodes[0], first: false, gap: outside };
-        gathered.add(
-            [(&one.nodes, of_one), (&other.nodes, of_other)],
-            ((crossing.normal, gap), (friction[1], DVec3::ZERO)),
-            (spring, outside, 0.0),
-            met,
-        );
     }
 }

@@ -1,6 +1,7 @@
 //! The forces that keep points outside of what they face.
 
 use super::body_slices::{BodySlices, Kept, set_vector, vector};
+use super::faced::tasks;
 use super::gather::{Gathered, InStep, gather};
 use super::{Surface, SurfaceContacts};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
@@ -100,22 +101,22 @@ pub(super) fn forget<T: Scalar>(contacts: &mut SurfaceContacts, now: &[u32], bod
 /// that they cannot: of one sweep of the kinematic law that is known.
 pub(super) fn meet<T: Scalar>(
     contacts: &mut SurfaceContacts,
-    (clock, cpu): (&Clock, &Cpu),
+    ((clock, cpu), reach): ((&Clock, &Cpu), f64),
     bodies: &mut [BodySlices<'_, T>],
     (signals, gain): (&Signals, Option<&mut ContactGain>),
 ) {
     let coefficients = IntegrationCoefficients::<f64>::of(clock);
-    let found = std::mem::take(&mut contacts.surface.found);
     let mut gathered = std::mem::take(&mut contacts.surface.gathered);
     release(&mut contacts.surface, bodies);
-    gathered.clear();
+    // one more for edges that cross
+    gathered.begin(tasks(contacts) + 1);
     gathered.foresee(&contacts.surface, &coefficients, bodies, cpu);
     gathered.hold(&contacts.surface, (&coefficients, signals), bodies);
     let in_step = InStep { largest: contacts.surface.motion.largest, settling: contacts.settling(clock) };
-    gather(contacts, &mut gathered, &found, &in_step, bodies);
+    gather(contacts, &mut gathered, (&in_step, reach, cpu), bodies);
     forget(contacts, &gathered.facing, bodies);
     let is_known = clock.relaxation.is_none() && contacts.sweeps <= 1;
-    let gain = gain.filter(|_| is_known && !gathered.set.contacts.iter().any(|contact| contact.springs));
+    let gain = gain.filter(|_| is_known && !gathered.set.contacts().any(|contact| contact.springs));
     if gain.is_some() {
         gathered.before.clear();
         gathered.before.extend(gathered.set.beginnings());
@@ -128,23 +129,23 @@ pub(super) fn meet<T: Scalar>(
     let work_factor = clock.relaxation.is_none().then_some(coefficients.work_factor);
     note_touches(contacts, &gathered, work_factor, bodies);
     push(contacts, &gathered.set.forces, bodies);
-    (contacts.surface.gathered, contacts.surface.found) = (gathered, found);
+    contacts.surface.gathered = gathered;
 }
 
 /// Notes what contacts came to.
 fn note_touches<T: Scalar>(
     contacts: &mut SurfaceContacts,
-    Gathered { set, met, .. }: &Gathered,
+    Gathered { set, .. }: &Gathered,
     work_factor: Option<f64>,
     bodies: &mut [BodySlices<'_, T>],
 ) {
     let mut deepest = contacts.surface.figures.deepest;
-    for (contact, met) in set.contacts.iter().zip(met).filter(|(contact, _)| contact.pressing > 0.0) {
-        let kept = contacts.kept(met.point);
+    for contact in set.contacts().filter(|contact| contact.pressing > 0.0) {
+        let kept = contacts.kept(contact.point);
         let touch = bodies[kept.body].kept_mut(kept);
-        let after = met.gap + contact.normal.dot(contact.step);
+        let after = contact.outside + contact.normal.dot(contact.step);
         deepest = deepest.max(-after);
-        if met.first {
+        if contact.is_first {
             set_vector(touch, 0, contact.slip);
             touch[4] = T::from_f64(if contact.slides { SLIDES } else { STICKS });
             touch[5] = T::from_f64(after);

@@ -45,8 +45,8 @@ impl SurfaceContacts {
     }
 }
 
-/// Bodies as slices, and whether anything may be near anything.
-type Searched<'a, T> = (bool, Vec<BodySlices<'a, T>>);
+/// Bodies as slices, and how far faces must be looked at (m); `None` where nothing may be near anything.
+type Searched<'a, T> = (Option<f64>, Vec<BodySlices<'a, T>>);
 
 /// How far faces must be looked at in this step (m); `None` where nothing was near anything in the last step, and
 /// nothing can be now.
@@ -62,7 +62,7 @@ pub(super) fn awake<T: Scalar>(
     (!sleeps).then_some(reach)
 }
 
-/// Finds what points face; `None` where nothing was near anything in the last step, and nothing can be now.
+/// Sees to it that points may be asked what they face; `None` where nothing was near anything in the last step, and nothing can be now.
 pub(super) fn search<'a, T: Scalar>(
     contacts: &mut SurfaceContacts,
     (clock, cpu): (&Clock, &Cpu),
@@ -76,16 +76,14 @@ pub(super) fn search<'a, T: Scalar>(
     }
     if !faced::wake(contacts, reach) && contacts.surface.crossings.near.is_empty() {
         contacts.surface.figures.asleep += 1;
-        return Ok(Some((false, bodies)));
+        return Ok(Some((None, bodies)));
     }
     update_places(contacts, &bodies, cpu);
     if !contacts.shortlists_hold(reach) {
         renew_shortlists(contacts, &bodies, reach);
     }
-    faced::face(contacts, reach, cpu);
-    crossings::find(contacts, reach);
-    contacts.surface.figures.examined += contacts.surface.found.len() as u64;
-    Ok(Some((true, bodies)))
+    contacts.surface.figures.examined += contacts.surface.awake.len() as u64;
+    Ok(Some((Some(reach), bodies)))
 }
 
 /// Follows how nodes move; gives how far faces must be looked at (m). It is looked where nodes are when what their

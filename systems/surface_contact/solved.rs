@@ -1,13 +1,12 @@
 //! Bodies in implicit steps: springs, whose forces are those at the end of the step that is solved for.
 
 use super::body_slices::{BodySlices, set_vector, vector_at};
-use super::faced::Found;
-use super::gather::{Gathered, InStep, Met, allowed};
+use super::gather::{Gathered, InStep, allowed};
 use super::meet::{FACES, SLIDES, STICKS, forget, push, release};
-use super::{Meeting, SurfaceContacts};
+use super::{Meeting, SurfaceContacts, crossings, faced};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
-use crate::contact::{Contact, Parts, Point};
+use crate::contact::{Contact, Faced, Parts, Point};
 use crate::error::Error;
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
@@ -79,14 +78,22 @@ pub(crate) fn find(world: &World, first_axis: impl Fn(Entity) -> Option<usize>, 
         let (body, row) = contacts.surface.nodes[contacts.surface.near.nodes[slot] as usize];
         Some(first_axis(contacts.bodies[body as usize])? + 3 * row as usize)
     };
-    for (contact, solved) in gathered.set.contacts.iter().zip(solved) {
+    for (contact, solved) in gathered.set.contacts().zip(solved) {
         let parts = contact.parts.iter().filter_map(|(slot, weight)| Some((axis_of(slot)?, weight)));
         found.push(TouchingSpring { parts: parts.collect(), force: contact.force(), slopes: solved.slopes });
     }
 }
 
 /// Finds which points may touch what in the step that begins, of what points face.
-pub(super) fn pair<T: Scalar>(contacts: &mut SurfaceContacts, clock: &Clock, bodies: &mut [BodySlices<'_, T>]) {
+pub(super) fn pair<T: Scalar>(
+    contacts: &mut SurfaceContacts,
+    (clock, cpu): (&Clock, &Cpu),
+    reach: f64,
+    bodies: &[BodySlices<'_, T>],
+) {
+    let mut found: Vec<Vec<(u32, Faced)>> = vec![Vec::new(); faced::tasks(contacts)];
+    faced::face(contacts, reach, cpu, found.iter_mut(), |_, point, faced, found| found.push((point, *faced)));
+    crossings::find(contacts, reach);
     let in_step = InStep { largest: contacts.surface.motion.largest, settling: contacts.settling(clock) };
     let mut pairs = std::mem::take(&mut contacts.surface.pairs);
     let surface = &contacts.surface;
@@ -94,8 +101,7 @@ pub(super) fn pair<T: Scalar>(contacts: &mut SurfaceContacts, clock: &Clock, bod
         let offset = gap - pair.allowed - pair.gap(&surface.places);
         pairs.push(Pair { offset, ..pair });
     };
-    for Found { place, faced, .. } in &surface.found {
-        let number = surface.lists.points[*place as usize];
+    for &(number, faced) in found.iter().flatten() {
         let point = &surface.points[number as usize];
         for (facing, first) in [(&faced.first, true), (&faced.second, false)] {
             let Some(facing) = facing else { continue };
@@ -106,7 +112,7 @@ pub(super) fn pair<T: Scalar>(contacts: &mut SurfaceContacts, clock: &Clock, bod
             let nodes = point.parts().chain(of_face).collect();
             let (gap, kept) = (contacts.gap(point, facing), contacts.kept(number));
             let allowed = match (first, &clock.springs) {
-                (true, _) => allowed(bodies[kept.body].kept_mut(kept), gap, &in_step),
+                (true, _) => allowed(bodies[kept.body].kept(kept), gap, &in_step),
                 // at rest all presses, however it got there
                 (false, _) if in_step.settling == f64::INFINITY => 0.0,
                 (false, Some(springs)) => borne(contacts, (point, facing.normal, gap), (&meeting, springs), bodies),
@@ -166,7 +172,7 @@ pub(super) fn press<T: Scalar>(
     bodies: &mut [BodySlices<'_, T>],
 ) {
     let mut gathered = std::mem::take(&mut contacts.surface.gathered);
-    gathered.clear();
+    gathered.begin(1);
     let coefficients = IntegrationCoefficients::<f64>::of(clock);
     gathered.foresee(&contacts.surface, &coefficients, bodies, cpu);
     let time = 1.0 / coefficients.rate;
@@ -205,12 +211,11 @@ fn add<T: Scalar>(
     all: &mut Vec<Solved>,
 ) {
     let &Pair { meeting, point, first, normal, .. } = pair;
-    let met = Met { point, first, gap: gap + pair.allowed };
     let Some(spring) = meeting.spring else { return };
-    let kept = contacts.kept(met.point);
-    let touch = bodies[kept.body].kept_mut(kept);
+    let kept = contacts.kept(point);
+    let touch = bodies[kept.body].kept(kept);
     let (state, before) = (touch[4].to_f64(), touch[5].to_f64() - touch[3].to_f64());
-    let (touched, sticks) = (met.first && state >= STICKS, met.first && state == STICKS);
+    let (touched, sticks) = (first && state >= STICKS, first && state == STICKS);
     let slip = if touched { vector_at(touch, 0) } else { DVec3::ZERO };
     let friction = meeting.friction[usize::from(!sticks)];
     let (mut parts, mut mass) = (Parts::default(), 0.0);
@@ -231,8 +236,8 @@ fn add<T: Scalar>(
     all.push(Solved { was, rubbed: -press.stiffness * contact.along(slip), slopes });
     // what slides keeps as much elastic slip as its force is of
     contact.slip = if press.stiffness > 0.0 { -contact.rubbing / press.stiffness } else { DVec3::ZERO };
-    gathered.set.contacts.push(contact);
-    gathered.met.push(met);
+    (contact.point, contact.is_first, contact.outside) = (point, first, gap + pair.allowed);
+    gathered.set.add(contact);
 }
 
 /// Notes what points do at the end of a step. Forces work with the mean of those at both ends, as all in implicit
@@ -252,12 +257,12 @@ fn note<T: Scalar>(
         let numbers = [pair.allowed, FACES, gap + pair.allowed];
         touch[3..6].iter_mut().zip(numbers).for_each(|(touch, number)| *touch = T::from_f64(number));
     }
-    contacts.surface.figures.contacts += gathered.set.contacts.len() as u64;
-    for ((contact, met), Solved { was, rubbed, .. }) in gathered.set.contacts.iter().zip(&gathered.met).zip(all) {
-        let kept = contacts.kept(met.point);
+    contacts.surface.figures.contacts += gathered.set.count() as u64;
+    for (contact, Solved { was, rubbed, .. }) in gathered.set.contacts().zip(all) {
+        let kept = contacts.kept(contact.point);
         let touch = bodies[kept.body].kept_mut(kept);
         let relative = contact.parts.step(&gathered.set.earlier);
-        if met.first {
+        if contact.is_first {
             set_vector(touch, 0, contact.slip);
             touch[4] = T::from_f64(if contact.slides { SLIDES } else { STICKS });
         }
@@ -268,6 +273,6 @@ fn note<T: Scalar>(
             touch[7] = T::from_f64(touch[7].to_f64() - mean.dot(relative));
         }
         let deepest = &mut contacts.surface.figures.deepest;
-        *deepest = deepest.max(-met.gap);
+        *deepest = deepest.max(-contact.outside);
     }
 }

@@ -80,9 +80,8 @@ fn momentum_stays_and_energy_is_below_its_bound() {
         // what that would get
         if sweeps == 1 {
             let most: f64 = before
-                .contacts
-                .iter()
-                .zip(&set.contacts)
+                .contacts()
+                .zip(set.contacts())
                 .filter(|(_, after)| after.pressing > 0.0)
                 .map(|(contact, after)| {
                     let relative = contact.normal.dot(contact.step);
@@ -93,9 +92,9 @@ fn momentum_stays_and_energy_is_below_its_bound() {
             assert_eq!(set.beyond_bound(&before.beginnings().collect::<Vec<_>>()), 0.0);
         }
         // what is lost is what the forces took
-        let took: f64 = set.contacts.iter().map(|contact| contact.work).sum();
+        let took: f64 = set.contacts().map(|contact| contact.work).sum();
         assert!((later - earlier - took).abs() <= 1e-11 * earlier, "{} and {took}", later - earlier);
-        for contact in &set.contacts {
+        for contact in set.contacts() {
             assert!(contact.pressing >= 0.0 && contact.rubbing.length() <= friction * contact.pressing * (1.0 + 1e-12));
         }
     }
@@ -111,7 +110,7 @@ fn energy_beyond_the_bound_is_found() {
         let ContactSet { steps, earlier, responses, .. } = all.clone();
         let mut set = ContactSet { steps, earlier, responses, ..ContactSet::default() };
         // several that share nodes correct each other by less
-        for mut contact in all.contacts.into_iter().take(if round % 2 == 0 { 1 } else { 40 }) {
+        for mut contact in all.batches.into_iter().flatten().take(if round % 2 == 0 { 1 } else { 40 }) {
             contact.slip = 0.3 * vector(&mut random);
             set.add(contact);
         }
@@ -122,17 +121,17 @@ fn energy_beyond_the_bound_is_found() {
             *step = *predicted + 3.0 * (*step - *predicted);
         }
         let find_steps = |set: &mut ContactSet| {
-            let ContactSet { contacts, steps, .. } = set;
-            contacts.iter_mut().for_each(|contact| contact.step = contact.parts.step(steps));
+            let ContactSet { batches, steps, .. } = set;
+            batches.iter_mut().flatten().for_each(|contact| contact.step = contact.parts.step(steps));
         };
-        for contact in &mut set.contacts {
+        for contact in set.batches.iter_mut().flatten() {
             (contact.pressing, contact.rubbing) = (3.0 * contact.pressing, 3.0 * contact.rubbing);
         }
         find_steps(&mut set);
         found += usize::from(set.beyond_bound(&before.beginnings().collect::<Vec<_>>()) > 0.0);
         set.steps[0].x = f64::NAN;
         find_steps(&mut set);
-        let has_first = set.contacts.iter().any(|of| of.pressing > 0.0 && of.parts.iter().any(|(node, _)| node == 0));
+        let has_first = set.contacts().any(|of| of.pressing > 0.0 && of.parts.iter().any(|(node, _)| node == 0));
         assert_eq!(set.beyond_bound(&before.beginnings().collect::<Vec<_>>()).is_nan(), has_first);
     }
     assert!(found > 50, "{found} of 500 that press alone, as far as they do");
@@ -145,23 +144,21 @@ fn shares_of_mass_majorise_the_coupling_of_contacts() {
     let mut largest = 0.0_f64;
     for _ in 0..300 {
         let (mut set, _) = random_set(&mut random, 0.0, 0.0);
+        set.share_masses(&one());
         let (shares, responses) = (set.shares.clone(), set.responses.clone());
-        set.contacts.iter_mut().for_each(|contact| contact.find_yields(&shares, &responses));
-        let count = set.contacts.len();
+        set.batches.iter_mut().flatten().for_each(|contact| contact.find_yields(&shares, &responses));
+        let count = set.count();
         let mut forces: Vec<f64> = (0..count).map(|_| random.f64()).collect();
         let mut growth = 0.0;
         for _ in 0..200 {
             let mut steps = vec![DVec4::ZERO; set.steps.len()];
-            for (contact, force) in set.contacts.iter().zip(&forces) {
+            for (contact, force) in set.contacts().zip(&forces) {
                 contact.parts.push(contact.normal * *force, &set.responses, &mut steps);
             }
-            let next: Vec<f64> = set
-                .contacts
-                .iter()
-                .map(|contact| contact.normal.dot(contact.parts.step(&steps)) / contact.yields)
-                .collect();
+            let next: Vec<f64> =
+                set.contacts().map(|contact| contact.normal.dot(contact.parts.step(&steps)) / contact.yields).collect();
             let norm = |all: &[f64]| {
-                all.iter().zip(&set.contacts).map(|(x, contact)| x * x * contact.yields).sum::<f64>().sqrt()
+                all.iter().zip(set.contacts()).map(|(x, contact)| x * x * contact.yields).sum::<f64>().sqrt()
             };
             growth = norm(&next) / norm(&forces);
             let size = norm(&next);
@@ -176,12 +173,15 @@ fn shares_of_mass_majorise_the_coupling_of_contacts() {
 /// Sets large enough to be shared out come to the same bits.
 #[test]
 fn threads_find_the_same_forces() {
+    const BATCHES: usize = 9;
     let mut random = Rng::with_seed(5);
     let count = 900;
     let mut set = ContactSet {
         steps: (0..count).map(|_| wide(&mut random)).collect(),
         earlier: vec![DVec4::ZERO; count],
         responses: (0..count).map(|_| DVec3::splat(0.1 + random.f64()).extend(0.0)).collect(),
+        // one of them stays empty
+        batches: vec![Vec::new(); BATCHES + 1],
         ..ContactSet::default()
     };
     for _ in 0..3 * WORTH_SHARING {
@@ -191,14 +191,15 @@ fn threads_find_the_same_forces() {
         parts.add(first, 1.0);
         (1..4).for_each(|next| parts.add(first + next, -1.0 / 3.0));
         let step = parts.step(&set.steps);
-        set.add(Contact::new(parts, (normal, 0.2 * random.f64() - 0.1, step), (0.3, DVec3::ZERO)));
+        let contact = Contact::new(parts, (normal, 0.2 * random.f64() - 0.1, step), (0.3, DVec3::ZERO));
+        set.batches[random.usize(0..BATCHES)].push(contact);
     }
     let mut shared = set.clone();
     set.solve(2, &one());
     shared.solve(2, &Cpu::new(3, 0, Default::default()));
-    assert_eq!((set.steps, set.forces), (shared.steps, shared.forces));
-    assert!(set.contacts.iter().zip(&shared.contacts).all(|(a, b)| a.force() == b.force() && a.slip == b.slip));
-    assert!(!shared.starts.is_empty() && set.starts.is_empty());
+    assert_eq!((&set.steps, &set.forces), (&shared.steps, &shared.forces));
+    assert!(set.contacts().zip(shared.contacts()).all(|(a, b)| a.force() == b.force() && a.slip == b.slip));
+    assert!(!shared.of_nodes.is_empty() && set.of_nodes.is_empty());
 }
 
 #[test]
@@ -224,10 +225,10 @@ fn one_contact_ends_on_the_surface_and_friction_holds_it() {
     set.add(Contact::new(parts, (DVec3::Z, 0.25, set.steps[0].truncate()), (0.5, DVec3::ZERO)));
     set.solve(1, &one());
     assert_eq!(set.steps[0], DVec4::new(0.0, 0.0, -0.25, 0.0));
-    assert_eq!((set.contacts[0].pressing, set.contacts[0].slides), (1.5, false));
+    assert_eq!((set.batches[0][0].pressing, set.batches[0][0].slides), (1.5, false));
     // with too little friction it slides on, held by μ N
     set.steps[0] = DVec4::new(0.3, 0.0, -1.0, 0.0);
-    set.contacts[0] = Contact::new(parts, (DVec3::Z, 0.25, set.steps[0].truncate()), (0.2, DVec3::ZERO));
+    set.batches[0][0] = Contact::new(parts, (DVec3::Z, 0.25, set.steps[0].truncate()), (0.2, DVec3::ZERO));
     set.solve(1, &one());
-    assert!((set.steps[0].x - 0.15).abs() < 1e-15 && set.contacts[0].slides, "{:?}", set.steps);
+    assert!((set.steps[0].x - 0.15).abs() < 1e-15 && set.batches[0][0].slides, "{:?}", set.steps);
 }
