@@ -8,7 +8,9 @@ use super::step_change::relax_fully;
 use super::{Equilibrium, Options, Simulation};
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
+use crate::contact::face_points;
 use crate::error::{Error, NotConverged};
+use crate::mesh::SurfaceFace;
 use crate::scene::SceneFile;
 use crate::scene::schema::{Analysis, EquilibriumSearch, InitialState, Integration, Inversion, Output, Scene};
 use bevy_ecs::prelude::*;
@@ -150,17 +152,66 @@ fn bodies(world: &mut World) -> Vec<(Entity, Label)> {
     query.iter(world).map(|(entity, label)| (entity, label.clone())).collect()
 }
 
-/// Takes over how a body touches others at rest, if that is by springs: the kinematic law begins anew.
+/// Takes over how a body touches others at rest, if that is by springs: the kinematic law begins anew. Where the motion
+/// may lose elements and the search for rest may not, rows have another order, and there is room for what may come to
+/// the surface.
 fn take_touch(world: &mut World, body: Entity, other: &World, from: Entity) {
-    let rows = |world: &World, entity| world.get::<Authoring>(entity).map(|authoring| authoring.node_rows.clone());
-    if other.resource::<Clock>().springs.is_none() || rows(world, body) != rows(other, from) {
+    let rows = |world: &World, entity| Some(world.get::<Authoring>(entity)?.node_rows.clone());
+    let (Some(to_rows), Some(from_rows)) = (rows(world, body), rows(other, from)) else { return };
+    if other.resource::<Clock>().springs.is_none() {
         return;
     }
+    let number = world.get::<Displacement>(body).map_or(0, |u| u.bytes().len() / u.len().max(1));
     for column in all_columns().iter().filter(|column| is_touch(column)) {
-        if let Some(bytes) = (column.bytes)(other, from) {
-            (column.write)(world, body, bytes);
+        let (Some(source), Some(target)) = ((column.bytes)(other, from), (column.bytes)(world, body)) else { continue };
+        let mut taken = target.to_vec();
+        let places = match column.name {
+            SurfaceTouch::NAME => {
+                let same = to_rows.iter().zip(&from_rows).map(|(to, from)| [to, from].map(|&row| row as usize));
+                same.map(|[to, from]| Same { numbers: MEETING_NUMBERS, places: [to, from], count: 1 }).collect()
+            }
+            ToolTouch::NAME => tool_places([(world, body), (other, from)]),
+            FaceTouch::NAME => face_places([(world, body), (other, from)]),
+            // one of each after the other
+            _ => vec![Same { numbers: 1, places: [0, 0], count: target.len() / number.max(1) }],
+        };
+        for Same { numbers, places, count } in places {
+            let [to, from] = places.map(|place| number * numbers * place..number * numbers * (place + count));
+            if let (Some(taken), Some(source)) = (taken.get_mut(to), source.get(from)) {
+                taken.copy_from_slice(source);
+            }
         }
+        (column.write)(world, body, &taken);
     }
+}
+
+/// Places in a column of two worlds that are of the same things: so many numbers each, the first two, and how many.
+struct Same {
+    numbers: usize,
+    places: [usize; 2],
+    count: usize,
+}
+
+/// What [`ToolTouch`] has of the same node in both worlds.
+fn tool_places(both: [(&World, Entity); 2]) -> Vec<Same> {
+    let tools = both.map(|(world, body)| Some((world.get::<ToolContacts>(body)?, world.get::<Authoring>(body)?)));
+    let [Some((to, to_rows)), Some((from, from_rows))] = tools else { return Vec::new() };
+    let place = |tools: &ToolContacts, row: u32| tools.rows.binary_search(&row).ok();
+    let same = |(&to_row, &from_row): (&u32, &u32)| {
+        let places = [place(to, to_row)?, place(from, from_row)?];
+        Some(Same { numbers: to.numbers(), places, count: 1 })
+    };
+    to_rows.node_rows.iter().zip(&from_rows.node_rows).filter_map(same).collect()
+}
+
+/// What [`FaceTouch`] has of the same facet in both worlds.
+fn face_places(both: [(&World, Entity); 2]) -> Vec<Same> {
+    let Some(authoring) = both[0].0.get::<Authoring>(both[0].1) else { return Vec::new() };
+    let surface = authoring.surface(|_, _| true);
+    let facets = || surface.iter().flat_map(SurfaceFace::facets).map(|facet| (facet, face_points(facet).len()));
+    let [to, from] = both.map(|(world, body)| FacePlaces::firsts(world.get::<FacePlaces>(body), facets()));
+    let same = to.into_iter().zip(from).zip(facets());
+    same.map(|((to, from), (_, count))| Same { numbers: MEETING_NUMBERS, places: [to, from], count }).collect()
 }
 
 /// Takes over columns of vectors, of which a node may have several, node by node.

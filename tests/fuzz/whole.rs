@@ -141,7 +141,14 @@ fn run_into_a_folder(scene: &SceneFile, options: &Options, whole: &Run) -> Resul
             let mut other = start(scene, options)?;
             other.restore(&kept).map_err(|e| format!("last state: {e}"))?;
             let ended = other.advance_towards_end(MOST_STEPS.saturating_sub(other.step_count()));
-            same("gone on from the last good state", whole, &finished(&mut other, ended)?)
+            let other_end = finished(&mut other, ended)?;
+            // of bodies that overlap only who draws pictures is warned
+            let is_warned = other.guards().warnings.iter().any(|warning| warning.criterion == "overlap");
+            let but_bytes = |run: &Run| Run { bytes: Vec::new(), ..whole_of(run) };
+            match is_warned && whole.displacements == other_end.displacements {
+                true => same("gone on from the last good state", &but_bytes(whole), &but_bytes(&other_end)),
+                false => same("gone on from the last good state", whole, &other_end),
+            }
         }
         Err(error) => told(&error).map(|_| ()),
     }
