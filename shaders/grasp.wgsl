@@ -66,9 +66,9 @@ fn hold(i: u32, node: u32, number: u32) {
     let of_node = foresee(node);
     let gap = of_node.free * (from_frame(at, of_tool) - place - of_node.predicted);
     let force = of_node.to_force * gap;
+    // to the end of the step it holds, as others have been told
     if length(force) > grips[number].strength {
         tool_hold[own + 3u] = WITHOUT;
-        return;
     }
     tool_hold[own] = force.x;
     tool_hold[own + 1u] = force.y;

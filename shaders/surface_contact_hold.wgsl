@@ -4,8 +4,8 @@
 struct HoldRow {
     closed: u32, // the slot that says whether it is
     signal: u32, // first of the slots that say where it is
-    strength: f32, // the force above which a node slips out (N)
     unused: u32,
+    unused_too: u32,
 }
 @group(0) @binding(0) var<uniform> holds: array<HoldRow, GRASPS>;
 // seven a node: its number among surfaces, its row, its place among who may be held, a bit for each grasp, bits of its
@@ -44,10 +44,6 @@ fn surface_contact_hold(@builtin(global_invocation_id) id: vec3<u32>, @builtin(n
         let there = vec3<f32>(
             dot(step.signals[pose], y), dot(step.signals[pose + 1u], y), dot(step.signals[pose + 2u], y));
         let gap = select(vec3<f32>(0.0), there - place - next, free);
-        let force = gap / select(vec3<f32>(1.0), response, free);
-        if length(force) > holds[number].strength {
-            continue;
-        }
         for (var k = 0u; k < 3u; k++) {
             surface_nodes[to + 3u + k] = next[k] + gap[k];
             surface_nodes[to + 9u + k] = 0.0;

@@ -153,9 +153,9 @@ impl Grasps {
         let foreseen = nodes.foresee(&step.coefficients, row);
         let gap = foreseen.free * (pose.place(of_tool) - place - foreseen.step);
         let force = foreseen.to_force * gap;
+        // to the end of the step it holds, as others have been told
         if force.length() > grasp.strength {
             values[3] = T::from_f64(WITHOUT);
-            return;
         }
         for i in 0..3 {
             values[i] = T::from_f64(force[i]);

@@ -15,7 +15,7 @@ pub(in crate::systems) struct Grip<'a, T> {
 impl<T: Scalar> Grip<'_, T> {
     /// Where a tool takes a node in this step (m), at a place among [`Grasps::rows`], that is so far from the grasps'
     /// reference (m) and would go as foreseen; `None` where no tool holds it. In the step in which a tool closes nobody
-    /// is held yet for whom asks. What a tool is too weak to hold without contact it does not hold.
+    /// is held yet for whom asks; whom a tool is too weak to hold goes without it from the next step on.
     pub fn step_of(&self, signals: &[[f64; 4]], node: usize, place: DVec3, foreseen: &Foreseen) -> Option<DVec3> {
         let (count, mask) = (self.grasps.numbers_a_grasp(), self.grasps.masks[node]);
         let held = |number: usize| {
@@ -25,8 +25,7 @@ impl<T: Scalar> Grip<'_, T> {
             }
             let pose = Pose::of_slots(&signals[grasp.tool.signal..]);
             let gap = foreseen.free * (pose.place(vector_at(self.numbers, at + 6)) - place - foreseen.step);
-            let holds = (foreseen.to_force * gap).length() <= grasp.strength;
-            holds.then_some(foreseen.step + gap)
+            Some(foreseen.step + gap)
         };
         // the last one has it
         (0..self.grasps.grasps.len()).rev().find_map(held)

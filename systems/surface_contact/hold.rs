@@ -50,10 +50,10 @@ impl Gathered {
 struct HoldRow {
     closed: u32,
     signal: u32,
-    strength: f32,
     unused: u32,
+    unused_too: u32,
 }
-uniform!(HoldRow { closed, signal, strength, unused });
+uniform!(HoldRow { closed, signal, unused, unused_too });
 
 /// The kernel for a body, after where its nodes would go is known; none where tools hold nothing of its surface.
 pub(super) fn kernel(
@@ -77,9 +77,8 @@ pub(super) fn kernel(
     let row = |grasp: &Grasp| HoldRow {
         closed: grasp.closed as u32,
         signal: grasp.tool.signal as u32,
-        // infinity is no number that a shader must know
-        strength: (grasp.strength as f32).min(f32::MAX),
         unused: 0,
+        unused_too: 0,
     };
     let holds: Vec<u8> = grasps.grasps.iter().flat_map(|grasp| row(grasp).bytes()).collect();
     let counts = [("GRASPS", grasps.grasps.len()), ("NUMBERS", grasps.numbers_a_grasp()), ("HOLDABLE", holdable.len())];

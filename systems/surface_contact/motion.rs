@@ -62,7 +62,8 @@ pub(super) fn awake<T: Scalar>(
     (!sleeps).then_some(reach)
 }
 
-/// Sees to it that points may be asked what they face; `None` where nothing was near anything in the last step, and nothing can be now.
+/// Sees to it that points may be asked what they face; `None` where nothing was near anything in the last step, and
+/// nothing can be now.
 pub(super) fn search<'a, T: Scalar>(
     contacts: &mut SurfaceContacts,
     (clock, cpu): (&Clock, &Cpu),

@@ -85,7 +85,7 @@ fn attempt(seed: u64, precision: Precision) -> Result<Option<bool>, String> {
             return if what.contains(whole::CONTACT_MADE_ENERGY) { Err(what) } else { Ok(Some(met)) };
         }
         met |= simulation.contact("b1").map_err(|e| e.to_string())?.force.length() > 0.0;
-        // rounding is of what nodes have, also where an element that turns inside out throws them about until it is seen
+        // rounding is of what nodes have, also where an element inside out throws them about until it is seen
         let (now, sizes) = momentum(&mut simulation)?;
         scale = scale.max(sizes);
         let off = (now - start).length() / scale;
