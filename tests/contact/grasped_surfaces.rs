@@ -101,7 +101,7 @@ fn forceps_feel_what_the_other_body_gets_and_the_books_close() {
 }
 
 /// Where contact makes nodes slip out of forceps that are too weak, it has pushed against held ones, and they are held
-/// to the end of that step: else what contact says that it took is not what it took, by a fifth of the tool's work here.
+/// to the end of that step: else what contact says that it took is not what it took, by a fifth of the tool's work.
 #[test]
 fn books_close_where_contact_tears_nodes_out_of_forceps() {
     for run in configurations() {
