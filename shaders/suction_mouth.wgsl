@@ -47,13 +47,22 @@ fn sucked_share(face: u32) -> f32 {
     var inside = 0.0;
     var sizes = 0.0;
     var height = 0.0;
+    var places: array<vec2<f32>, 4>; // across the axis; a triangle's last corner twice
     for (var corner = 0u; corner < corners; corner++) {
         let x = place_of(faces[at + corner]) - origin;
         let y = x.x * rows[0].xyz + x.y * rows[1].xyz + x.z * rows[2].xyz;
+        places[corner] = y.xy;
+        places[3] = y.xy;
         let off = mouth.bore - length(y.xy);
         inside += max(off, 0.0);
         sizes += abs(off);
         height += y.z;
+    }
+    let across = places[2] - places[0];
+    let other = places[3] - places[1];
+    // a face that is turned away is on the far side of the tissue, or of a hole in it
+    if across.x * other.y <= across.y * other.x {
+        return 0.0;
     }
     if abs(height) > mouth.reach * f32(corners) || inside <= 0.0 {
         return 0.0;

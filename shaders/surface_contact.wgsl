@@ -33,9 +33,10 @@ fn may_meet(point: u32, triangle: u32) -> bool {
     return true;
 }
 
-// Whether two faces are walls of a corner that the point is in.
+// Whether two faces are walls of a corner that the point is in, and the first is not behind the second.
 fn is_corner(first: Facing, second: Facing, point: vec3<f32>) -> bool {
-    return dot(first.normal, second.normal) < CORNER && rises(first, second, point);
+    let is_before = dot(second.normal, first.at - second.at) > -ALIKE * surface.edge;
+    return dot(first.normal, second.normal) < CORNER && is_before && rises(first, second, point);
 }
 
 struct Faced {

@@ -14,8 +14,8 @@ use crate::shader;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
-/// Exposed faces in the mouth are sucked, those at its edge by the share that is within: in every tenth step it is
-/// looked which those are, and what share χ of the mouth they close, seen along its axis. An open mouth leaks: the
+/// Exposed faces in the mouth that are turned to it are sucked, those at its edge by the share that is within: in every
+/// tenth step it is looked which those are, and what share χ of the mouth they close, seen along its axis. An open mouth leaks: the
 /// pressure goes to Δp χ², and follows in the time that the scene names.
 ///
 /// A face is exposed while its element is there and its neighbour's is not: what removal bares is sucked at once.
@@ -91,8 +91,7 @@ fn mark(
         if !is_there(face) || opposite != NO_FACE && is_there(opposite as usize) {
             return 0;
         }
-        let corners = faces.places(face).iter().map(|&node| pose.inverse(place(node)));
-        suction.share_in_mouth(corners).to_bits()
+        suction.share_in_mouth(faces.corners[face].map(|node| pose.inverse(place(node)))).to_bits()
     };
     let (of_faces, of_nodes) = marks.split_at_mut(faces.len());
     of_faces.iter_mut().enumerate().for_each(|(face, mark)| *mark = of_face(face));

@@ -1,6 +1,7 @@
 //! Contacts with tools: selections become rows, and what stands in each other's way at the start is told.
 
 use super::body_columns::stiffnesses;
+use super::tool_overlaps::{self, Standing};
 use super::{Assembly, BodyParts};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
@@ -15,9 +16,6 @@ use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// How deep nodes may be inside a tool at the start, in edges: those come out by and by.
-const DEEPEST: f64 = 0.5;
-
 /// How far a tool may go in a step, in edges: beyond, it may be through a surface before anybody sees it.
 pub(super) const FARTHEST: f64 = 0.5;
 
@@ -28,9 +26,6 @@ const SAFELY: f64 = 0.5;
 /// Half of what a tool measures across, in edges, below which it may slip between nodes.
 const THINNEST: f64 = 2.0;
 
-/// Nodes that a complaint names.
-const NAMED: usize = 10;
-
 /// Spawns what tools may touch on each body.
 pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
     let scene = &assembly.scene.scene;
@@ -40,7 +35,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
     let geometries = geometries(assembly.scene, world, diagnostics);
     for (name, body) in &assembly.bodies {
         let mut marks: BTreeMap<u32, u32> = BTreeMap::new();
-        let mut tools = Vec::new();
+        let (mut tools, mut numbers) = (Vec::new(), Vec::new());
         let reference = reference(&body.placed.mesh.points);
         let edge = edge(body);
         for (number, contact) in scene.contacts.iter().enumerate() {
@@ -61,6 +56,11 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             }
             let bit = 1 << tools.len();
             rows.into_iter().for_each(|row| *marks.entry(row).or_default() |= bit);
+            for (other, _) in tools.iter().enumerate().filter(|(_, other): &(_, &ToolContact)| other.tool == *tool) {
+                let both = marks.values().filter(|mask| *mask & bit != 0 && **mask >> other & 1 == 1).count();
+                meets_twice(both, (tool, name), [numbers[other], number], diagnostics);
+            }
+            numbers.push(number);
             let signal = Signal::Pose { motion: motion(found), reference };
             let signal = world.resource_mut::<Signals>().add(signal);
             let (friction, spring) = (contact.friction(), spring_of(contact, scene));
@@ -87,6 +87,22 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
 /// thick from its middle is still nearest to the side that it came through. 0: it may be any way.
 fn sweeps_beyond(geometry: &Geometry, edge: f64) -> f64 {
     geometry.smallest_radius().map_or(0.0, |radius| (SAFELY * radius).max(1e-6 * edge))
+}
+
+/// Tells that nodes of a body meet a tool by two contacts, of these numbers: which of them would count?
+pub(super) fn meets_twice(
+    nodes: usize,
+    (tool, body): (&str, &str),
+    [first, second]: [usize; 2],
+    diagnostics: &mut Diagnostics,
+) {
+    if nodes > 0 {
+        let many = if nodes == 1 { "a node".to_string() } else { format!("{nodes} nodes") };
+        let message = format!("{many} of `{body}` would meet the tool `{tool}` twice: by contacts[{first}] and here");
+        diagnostics
+            .error_at(format!("contacts[{second}]").as_str(), message)
+            .note("leave one of both out, or let `on` part the surface between them");
+    }
 }
 
 /// The spring of a contact, if its law is one. At rest nothing damps.
@@ -229,8 +245,10 @@ pub fn motion(tool: &Tool) -> ToolMotion {
     }
 }
 
-/// Looks for nodes inside tools at the start, and for tools that are too fast for the mesh.
-pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Diagnostics) {
+/// Looks for nodes inside tools at the start, and tells whether there are some; and for tools that are too fast for the
+/// mesh.
+pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Diagnostics) -> bool {
+    let mut are_inside = false;
     let clock = world.resource::<Clock>();
     for (name, body) in &assembly.bodies {
         let Some(contacts) = world.get::<ToolContacts>(body.entity) else { continue };
@@ -245,7 +263,7 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
             let rows: Vec<u32> = touched.map(|(&row, _)| row).collect();
             let standing =
                 Standing { tool: &contact.tool, geometry: &contact.geometry, pose, rows: &rows, edge: contacts.edge };
-            inside(name, body, &standing, world, diagnostics);
+            are_inside |= tool_overlaps::check(name, body, &standing, (&assembly.scene.scene, world), diagnostics);
             if clock.relaxation.is_some() {
                 continue;
             }
@@ -266,6 +284,7 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
             }
         }
     }
+    are_inside
 }
 
 /// Warns of moves that happen all at once, and of what becomes of nodes then.
@@ -282,64 +301,5 @@ pub(super) fn jumps(name: &str, tool: &Tool, nodes: &str, diagnostics: &mut Diag
         };
         let path = format!("tools.\"{name}\".moves[{number}].curve");
         diagnostics.warn_at(path.as_str(), format!("{message}: {nodes}")).note(note);
-    }
-}
-
-/// A tool at the start, and the nodes that it may touch of a body whose edges are so long (m).
-pub(super) struct Standing<'a> {
-    pub tool: &'a str,
-    pub geometry: &'a Geometry,
-    pub pose: Pose,
-    pub rows: &'a [u32],
-    pub edge: f64,
-}
-
-/// Nodes that are inside a tool at the start: deep ones are an error.
-pub(super) fn inside(
-    name: &str,
-    body: &BodyParts,
-    standing: &Standing<'_>,
-    world: &World,
-    diagnostics: &mut Diagnostics,
-) {
-    let (Some(rest), Some(u)) = (world.get::<RestPosition>(body.entity), world.get::<Displacement>(body.entity)) else {
-        return;
-    };
-    let Standing { tool, geometry, pose, rows, edge } = standing;
-    let path = format!("tools.\"{tool}\"");
-    let mut found: Vec<(f64, u32)> = rows
-        .iter()
-        .map(|&row| {
-            let place = rest.0[row as usize] + u.vector(row as usize);
-            (geometry.distance(pose.inverse(place)).0, row)
-        })
-        .filter(|(distance, _)| *distance < -1e-3 * edge)
-        .collect();
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let Some(&(deepest, _)) = found.first() else { return };
-    let authoring = world.get::<Authoring>(body.entity);
-    let number = |row: u32| authoring.map_or(u64::from(row), |authoring| authoring.node_id(row as usize));
-    let mut nodes: Vec<String> = found.iter().take(NAMED).map(|&(_, row)| number(row).to_string()).collect();
-    if found.len() > NAMED {
-        nodes.push("...".into());
-    }
-    let message = format!(
-        "{} of `{name}` {} inside the tool `{}` at the start, the deepest by {:.3e} m",
-        if found.len() == 1 { "a node".to_string() } else { format!("{} nodes", found.len()) },
-        if found.len() == 1 { "is" } else { "are" },
-        tool,
-        -deepest,
-    );
-    let nodes = format!("nodes: {}", nodes.join(", "));
-    if -deepest > DEEPEST * edge {
-        diagnostics
-            .error_at(path.as_str(), message)
-            .note(nodes)
-            .note(format!("up to half an edge of a face, {:.3e} m, is pushed out", DEEPEST * edge));
-    } else {
-        diagnostics
-            .warn_at(path.as_str(), message)
-            .note(nodes)
-            .note("they are pushed out while a wave goes through the body");
     }
 }

@@ -49,7 +49,11 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             &When::EnergyDensityAbove(limit) => {
                 by_criterion(body, &removal.on, &marks, Measure::EnergyDensity, limit, world);
             }
-            when @ When::InTool { .. } => tool_removal::add(assembly, body, &marks, when, world),
+            when @ When::InTool { .. } => {
+                let path = format!("removal[{number}].when.reach");
+                tool_removal::check(assembly, body, (when, &path), world, diagnostics);
+                tool_removal::add(assembly, body, &marks, when, world);
+            }
         }
     }
 }

@@ -1,8 +1,7 @@
 //! Tools that move freely: what they weigh, where they begin, and which bodies they meet.
 
-use super::contacts::{
-    FARTHEST, Standing, bounds, edge, geometries, inside, may_slip, motion, reference, rows, settling,
-};
+use super::contacts::{FARTHEST, bounds, edge, geometries, may_slip, meets_twice, motion, reference, rows, settling};
+use super::tool_overlaps::{self, Standing};
 use super::{Assembly, loads};
 use crate::components::*;
 use crate::scene::diagnostic::Diagnostics;
@@ -82,7 +81,7 @@ fn meets(
     world: &World,
     diagnostics: &mut Diagnostics,
 ) -> Vec<MetBody> {
-    let mut all = Vec::new();
+    let (mut all, mut numbers) = (Vec::new(), Vec::new());
     for (number, contact) in assembly.scene.scene.contacts.iter().enumerate() {
         let Contact::Tool { tool: of, body: on_body, on, thin, .. } = contact else { continue };
         if of != tool {
@@ -98,6 +97,11 @@ fn meets(
             if !thin {
                 may_slip(tool, name, (geometry, edge), diagnostics);
             }
+            for (other, met) in numbers.iter().zip(&all).filter(|(_, met): &(_, &MetBody)| met.name == *name) {
+                let both = rows.iter().filter(|row| met.rows.binary_search(row).is_ok()).count();
+                meets_twice(both, (tool, name), [*other, number], diagnostics);
+            }
+            numbers.push(number);
             let (settling, friction) = (settling(body, edge, world), contact.friction());
             all.push(MetBody { body: body.entity, name: name.clone(), rows, friction, edge, settling });
         }
@@ -105,10 +109,12 @@ fn meets(
     all
 }
 
-/// Looks for nodes inside free tools at the start, and for tools that are too fast for the step.
-pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Diagnostics) {
+/// Looks for nodes inside free tools at the start, and tells whether there are some; and for tools that are too fast for
+/// the step.
+pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Diagnostics) -> bool {
+    let mut are_inside = false;
     let (Some(free), Some(motions)) = (world.get_resource::<FreeTools>(), world.get_resource::<FreeMotions>()) else {
-        return;
+        return false;
     };
     let time_step = world.resource::<Clock>().time_step;
     for (tool, FreeMotion { motion, .. }) in free.all.iter().zip(&motions.all) {
@@ -119,7 +125,7 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
             let Some(body) = assembly.bodies.get(&met.name) else { continue };
             let standing =
                 Standing { tool: &tool.name, geometry: &tool.geometry, pose, rows: &met.rows, edge: met.edge };
-            inside(&met.name, body, &standing, world, diagnostics);
+            are_inside |= tool_overlaps::check(&met.name, body, &standing, (&assembly.scene.scene, world), diagnostics);
             if step > FARTHEST * met.edge {
                 let message = format!(
                     "the tool `{}` goes {step:.3e} m a step at the start, and faces of `{}` have edges of {:.3e} m",
@@ -132,4 +138,5 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
             }
         }
     }
+    are_inside
 }

@@ -30,6 +30,7 @@ mod surface_contacts;
 mod surface_overlaps;
 mod sutures;
 mod time_step;
+mod tool_overlaps;
 mod tool_removal;
 mod user_laws;
 
@@ -125,9 +126,14 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     start::deform(assembly, world, diagnostics);
     // turning is about where bodies are then
     body_columns::start(assembly, world);
-    contacts::check(assembly, world, diagnostics);
-    free_tools::check(assembly, world, diagnostics);
-    surface_overlaps::check(assembly, world, diagnostics);
+    let begin_inside = [
+        contacts::check(assembly, world, diagnostics),
+        free_tools::check(assembly, world, diagnostics),
+        surface_overlaps::check(assembly, world, diagnostics),
+    ];
+    if begin_inside.contains(&true) {
+        world.insert_resource(BeginsInside);
+    }
     grasps::check(assembly, world, diagnostics);
     sutures::measure(world, diagnostics);
     let scene = &assembly.scene.scene;

@@ -22,37 +22,42 @@ const BELOW: f64 = 0.05;
 /// Nodes that a complaint names.
 const NAMED: usize = 10;
 
-/// Looks for nodes that are inside another body, or another part of their own, at the start: deep ones are an error.
+/// Looks for nodes that are inside another body, or another part of their own, at the start, and tells whether there are
+/// some: deep ones are an error.
 /// Nodes of one that never meet what is near them at rest are told, too.
-pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Diagnostics) {
-    let Some(contacts) = world.get_resource::<SurfaceContacts>() else { return };
+pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Diagnostics) -> bool {
+    let Some(contacts) = world.get_resource::<SurfaceContacts>() else { return false };
+    let mut are_inside = false;
     let body = |name: &String| assembly.bodies.get(name);
     for (number, contact) in assembly.scene.scene.contacts.iter().enumerate() {
         match contact {
             Contact::Tool { .. } => {}
-            Contact::Between { bodies: (a, b), .. } => {
+            Contact::Between { bodies: (a, b), thickness, .. } => {
                 let (Some(of_a), Some(of_b)) = (body(a), body(b)) else { continue };
                 let [one, other] = [of_a, of_b].map(|body| Outside::new(body, at_start(body, world)));
                 let path = format!("contacts[{number}].bodies");
-                overlap([(a, &one), (b, &other)], contacts.edge, &path, diagnostics);
-                overlap([(b, &other), (a, &one)], contacts.edge, &path, diagnostics);
+                for pair in [[(a, &one), (b, &other)], [(b, &other), (a, &one)]] {
+                    are_inside |= overlap(pair, contacts.edge, &path, diagnostics)
+                        || too_near(pair, contacts.edge, *thickness, &path, diagnostics);
+                }
             }
             Contact::Itself { body: named, .. } => {
                 let Some(name) = named.as_ref().or(assembly.bodies.keys().next()) else { continue };
                 let Some(of) = body(name) else { continue };
                 let path = format!("contacts[{number}]");
                 let outside = Outside::new(of, at_start(of, world));
-                overlap([(name, &outside), (name, &outside)], contacts.edge, &path, diagnostics);
+                are_inside |= overlap([(name, &outside), (name, &outside)], contacts.edge, &path, diagnostics);
                 if let Some(near) = contacts.near_at_rest() {
                     narrow_gaps(name, &Outside::new(of, of.placed.mesh.clone()), near, &path, diagnostics);
                 }
             }
         }
     }
+    are_inside
 }
 
 /// A body's mesh with its nodes where they start.
-fn at_start(body: &BodyParts, world: &World) -> Mesh {
+pub(super) fn at_start(body: &BodyParts, world: &World) -> Mesh {
     let mut mesh = body.placed.mesh.clone();
     if let Some(u) = world.get::<Displacement>(body.entity) {
         let moved = mesh.points.iter_mut().zip(&body.node_rows);
@@ -132,6 +137,22 @@ impl Outside {
         found
     }
 
+    /// The nodes that are so near (m) to another body, and how near, the nearest first.
+    fn nearer(&self, other: &Outside, near: f64) -> Vec<(f64, u32)> {
+        if near <= 0.0 {
+            return Vec::new();
+        }
+        let distance = |node: u32| {
+            let (at, mut distance) = (self.at(node), f64::INFINITY);
+            other.near(at, near, |_, _, nearest| distance = distance.min(at.distance(nearest)));
+            distance
+        };
+        let mut found: Vec<(f64, u32)> = self.nodes.keys().map(|&node| (distance(node), node)).collect();
+        found.retain(|(distance, _)| *distance < near);
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found
+    }
+
     /// The nodes that are so near (m) in front of a face of another part of the same body that looks back at them, and
     /// how near, the nearest first.
     fn narrow(&self, near: f64) -> Vec<(f64, u32)> {
@@ -166,14 +187,15 @@ impl Outside {
     }
 }
 
+/// Tells of nodes of one body inside another, and whether there are some.
 fn overlap(
     [(of, one), (inside, other)]: [(&String, &Outside); 2],
     edge: f64,
     path: &str,
     diagnostics: &mut Diagnostics,
-) {
+) -> bool {
     let found = one.inside(other, DEEPEST * edge, 1e-3 * edge);
-    let Some(&(deepest, _)) = found.first() else { return };
+    let Some(&(deepest, _)) = found.first() else { return false };
     let (many, nodes) = one.told(&found);
     let is = if found.len() == 1 { "is" } else { "are" };
     let place = if of == inside { "other parts of it".to_string() } else { format!("`{inside}`") };
@@ -188,6 +210,36 @@ fn overlap(
         let message = format!("{many} of `{of}` {is} inside {place} at the start, the deepest by {deepest:.3e} m");
         diagnostics.warn_at(path, message).note(nodes).note("they are pushed out while a wave goes through the body");
     }
+    true
+}
+
+/// Tells of nodes of one body that are nearer to another than the thickness (m) between them, and whether there are some:
+/// those are pushed apart, like what is inside.
+fn too_near(
+    [(of, one), (to, other)]: [(&String, &Outside); 2],
+    edge: f64,
+    thickness: f64,
+    path: &str,
+    diagnostics: &mut Diagnostics,
+) -> bool {
+    let found = one.nearer(other, thickness - 1e-3 * edge);
+    let Some(&(nearest, _)) = found.first() else { return false };
+    let (many, nodes) = one.told(&found);
+    let is = if found.len() == 1 { "is" } else { "are" };
+    let message = format!(
+        "{many} of `{of}` {is} nearer to `{to}` at the start than the `thickness` of {thickness:.3e} m, the nearest by \
+         {:.3e} m",
+        thickness - nearest
+    );
+    if thickness - nearest > DEEPEST * edge {
+        diagnostics
+            .error_at(path, message)
+            .note(nodes)
+            .note(format!("up to half an edge of a face, {:.3e} m, is pushed apart", DEEPEST * edge));
+    } else {
+        diagnostics.warn_at(path, message).note(nodes).note("they are pushed apart while a wave goes through the body");
+    }
+    true
 }
 
 /// Tells which nodes of a body never meet what they are in front of, because that is so near (m) at rest.

@@ -86,7 +86,15 @@ pub(super) fn measure(world: &mut World, diagnostics: &mut Diagnostics) {
                 )
                 .note("a thread goes from one point to another; what touches is held by `Tie` or `Glue`");
         }
-        suture.length.get_or_insert(length);
+        let length = *suture.length.get_or_insert(length);
+        if suture.tighten > length {
+            diagnostics
+                .error_at(
+                    format!("attachments[{}].tighten", suture.number).as_str(),
+                    format!("it draws in {:.3e} m of a thread that is {length:.3e} m long", suture.tighten),
+                )
+                .note("no thread is shorter than 0 m");
+        }
     }
     world.insert_resource(sutures);
 }

@@ -4,10 +4,35 @@ use super::contacts::{motion, reference};
 use super::{Assembly, BodyParts};
 use crate::components::*;
 use crate::evaluation::rest_volume;
-use crate::scene::schema::{Threshold, Tool, When};
+use crate::scene::diagnostic::Diagnostics;
+use crate::scene::schema::{Contact, Threshold, Tool, When};
 use crate::tools::{Shape, Solid};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+
+/// A reach below this share of an element that a tool is kept out of finds none: centroids are farther below faces.
+const HARDLY: f64 = 0.1;
+
+/// Tells of a reach that ends above the centroids of elements whose nodes keep outside of the tool.
+pub(super) fn check(
+    assembly: &Assembly<'_>,
+    body: &BodyParts,
+    (when, path): (&When, &str),
+    world: &World,
+    diagnostics: &mut Diagnostics,
+) {
+    let When::InTool { tool, reach, .. } = when else { return };
+    let keeps_out = |contact: &Contact| matches!(contact, Contact::Tool { tool: of, .. } if of == tool);
+    let across = mean_volume(body, world).cbrt();
+    if *reach < HARDLY * across && assembly.scene.scene.contacts.iter().any(keeps_out) {
+        diagnostics
+            .warn_at(
+                path,
+                format!("`{tool}` takes elements whose centroids are within {reach:.1e} m, and it stays outside"),
+            )
+            .note(format!("elements are {across:.1e} m across: nothing, or hardly anything, comes within its reach"));
+    }
+}
 
 /// Adds a tool that takes marked elements of a body.
 pub(super) fn add(assembly: &Assembly<'_>, body: &BodyParts, marks: &[bool], when: &When, world: &mut World) {

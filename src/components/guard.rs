@@ -4,6 +4,11 @@ use bevy_ecs::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+/// Nodes are inside tools or other bodies at the start: pushing them out does work on what they are in. There where it is
+/// so.
+#[derive(Resource, Clone, Copy, Debug)]
+pub struct BeginsInside;
+
 /// What the guards, and probes that hold peaks, have seen so far; part of the state, so that what goes on from a
 /// snapshot stops where it would have.
 #[derive(Resource, Clone, Debug, Default, Deserialize, Serialize, PartialEq)]

@@ -77,7 +77,7 @@ pub use grab::{Grabs, HeldNode};
 #[doc(hidden)]
 pub use grasp::{Grasp, Grasps, HOLD_NUMBERS, ToolHold};
 #[doc(hidden)]
-pub use guard::{Extreme, GuardMemory, Notice};
+pub use guard::{BeginsInside, Extreme, GuardMemory, Notice};
 #[doc(hidden)]
 pub use input::{Change, Input, InputState};
 #[doc(hidden)]

@@ -55,12 +55,6 @@ impl BodyFaces {
         self.len() + self.parts.rows.len()
     }
 
-    /// The corners of a face, each once.
-    pub fn places(&self, face: usize) -> &[u32] {
-        let corners = &self.corners[face];
-        &corners[..if corners[2] == corners[3] { 3 } else { 4 }]
-    }
-
     /// What is loaded while these marks are set.
     pub fn marked(&self, marks: &[u32]) -> FaceCorners {
         let all = &self.parts;
@@ -122,19 +116,22 @@ impl Suction {
         self.number * self.faces.words()
     }
 
-    /// What share of a face is in the mouth, by its corners in the tool's frame: as if the distance to the mouth's edge
-    /// were linear between them, and whether in reach, as its centroid is.
-    pub fn share_in_mouth(&self, corners: impl Iterator<Item = DVec3>) -> f32 {
-        let (mut inside, mut sizes, mut height, mut count) = (0.0, 0.0, 0.0, 0.0);
-        for y in corners {
+    /// What share of a face is in the mouth, by its corners in the tool's frame, a triangle's last twice: as if the
+    /// distance to the mouth's edge were linear between them, and whether in reach, as its centroid is. A face that is
+    /// turned away from the mouth, on the far side of the tissue or of a hole in it, is not in it.
+    pub fn share_in_mouth(&self, corners: [DVec3; 4]) -> f32 {
+        let [a, b, c, d] = corners;
+        let count = if c == d { 3 } else { 4 };
+        let (mut inside, mut sizes, mut height) = (0.0, 0.0, 0.0);
+        for y in &corners[..count] {
             let off = self.bore - y.truncate().length();
             inside += off.max(0.0);
             sizes += off.abs();
             height += y.z;
-            count += 1.0;
         }
-        let in_reach = f64::abs(height) <= self.reach * count;
-        if in_reach && inside > 0.0 { (inside / sizes) as f32 } else { 0.0 }
+        let is_turned_here = (c - a).truncate().perp_dot((d - b).truncate()) > 0.0;
+        let in_reach = f64::abs(height) <= self.reach * count as f64;
+        if is_turned_here && in_reach && inside > 0.0 { (inside / sizes) as f32 } else { 0.0 }
     }
 
     /// Takes over what the body's columns say.

@@ -208,14 +208,16 @@ impl Surfaces {
 
     /// Whether two faces are walls of a corner that the point is in: the second rises before the first. A node on an
     /// edge has both its flanks, too. A point of a face is never on one, and a wall that falls off beside it, with a
-    /// corner in the first's plane or one that rounding lifts a little, would push it along the face.
+    /// corner in the first's plane or one that rounding lifts a little, would push it along the face. Where the first
+    /// is behind the second, the second falls off beyond a rim, and bent faces lift its edge a little.
     fn is_corner(&self, places: &[DVec3], point: &Point, [first, second]: [&Facing; 2], edge: f64) -> bool {
         let height = |at: DVec3| first.normal.dot(at - first.at);
         let rises = || match point.triangle {
             None => height(second.at) > 0.0,
             Some(_) => self.corners(places, second.triangle).into_iter().any(|corner| height(corner) > ALIKE * edge),
         };
-        first.normal.dot(second.normal) < CORNER && rises()
+        let is_before = second.normal.dot(first.at - second.at) > -ALIKE * edge;
+        first.normal.dot(second.normal) < CORNER && is_before && rises()
     }
 
     /// By how much the unit normal of a triangle with sides a, b and area A changes at most, as long as no two nodes

@@ -131,12 +131,22 @@ pub(super) fn rattling(memory: &mut GuardMemory, made: f64, settings: &GuardSett
     if settings.limits.off.contains(&Guard::Energy) || memory.scale <= 0.0 || share.is_nan() || share <= limit {
         return;
     }
+    let way_out = match settings.implicit {
+        false => {
+            "what begins inside is pushed out, or something rattles; a smaller `share`, `damping` of the law, a smaller \
+             integration.safety, or `law: Kinematic`, which makes none"
+        }
+        true => {
+            "what begins inside is pushed out, or a step brought it in before anybody looked; lower `step` of the solver, or \
+             make its steps `adaptive`"
+        }
+    };
     let message = format!(
-        "springs of contact gave back {:.1} % of the largest energy so far more than they got ({:.1} % are a warning, \
-         guards.energy.warn): what begins inside is pushed out, or something rattles; a smaller `share`, `damping` of the \
-         law, a smaller integration.safety, or `law: Kinematic`, which makes none",
+        "springs of contact gave back {:.1} % of the largest energy so far more than they got ({:.1} % are a warning, {}): \
+         {way_out}",
         100.0 * share,
-        100.0 * limit
+        100.0 * limit,
+        settings.limit_of_energy("warn")
     );
     warn(memory, world, "contact", "", share, limit, message);
 }

@@ -13,6 +13,9 @@ use bevy_ecs::prelude::*;
 
 /// What leads to a breakdown when the scene insists on a step beyond the stable one.
 const STEP_TOO_LARGE: &str = "a time step beyond the stable one (leave `step` out to have it found)";
+/// Why energy may come from contact, where something began inside of something else.
+const INSIDE: &str = "nodes that were inside tools or other bodies at the start, and were pushed out (begin apart, or with a \
+     finer mesh: see the warnings of `sinew check`)";
 const JUMP: &str = "a prescribed motion that jumps (use a ramp: `curve: Smooth(end: ...)` or `Ramp(end: ...)`)";
 const INVERTED: &str = "a load or motion too large or too sudden for the mesh (use a ramp, a finer mesh, or say by `inversion` of the \
                         material what becomes of such elements), or a time step that is too large (lower integration.safety)";
@@ -299,6 +302,8 @@ pub(super) fn instability(
     let (time, step) = (clock.time(), clock.step);
     let jumped = world.get_resource::<Signals>().is_some_and(|signals| signals.have_jumped(time));
     let cause = if settings.beyond { STEP_TOO_LARGE.into() } else { cause.to_string() };
+    let pushed = criterion.name == "energy" && world.contains_resource::<BeginsInside>();
+    let cause = if pushed { format!("{INSIDE}; {cause}") } else { cause };
     let cause = if jumped { format!("{JUMP}; {cause}") } else { cause };
     Instability { time, step, body, what, cause, good_until, criterion, last_good: None }
 }

@@ -1,5 +1,7 @@
-//! Bodies that are where others are. Nothing keeps bodies apart that no contact is between: what they do to each other
-//! then is nothing, and that must be known.
+//! Bodies that are where others are, or rigid tools. Nothing keeps bodies apart that no contact is between: what they do
+//! to each other then is nothing, and that must be known.
+
+mod tools;
 
 use crate::backend::device::bring_to_host;
 use crate::components::*;
@@ -37,7 +39,7 @@ struct Placed<'a> {
     meets: bool,
 }
 
-/// Looks for pairs of bodies that overlap, and warns once of each. Boxes around bodies are compared first: those of one
+/// Looks for pairs of bodies that overlap, and for tools in bodies, and warns once of each. Boxes around bodies are compared first: those of one
 /// body, or apart from each other, take no time.
 ///
 /// # Errors
@@ -45,7 +47,10 @@ struct Placed<'a> {
 pub(super) fn check(world: &mut World) -> Result<(), Error> {
     let bodies: Vec<Entity> = world.query_filtered::<Entity, With<Authoring>>().iter(world).collect();
     let told = |memory: &GuardMemory| memory.warnings.iter().filter(|notice| notice.criterion == OVERLAP).count();
-    if bodies.len() < 2 || world.get_resource::<GuardMemory>().is_some_and(|memory| told(memory) >= MOST_PAIRS) {
+    let pairs = tools::pairs(world);
+    if bodies.len() < 2 && pairs.is_empty()
+        || world.get_resource::<GuardMemory>().is_some_and(|memory| told(memory) >= MOST_PAIRS)
+    {
         return Ok(());
     }
     bring_to_host(world, |_, name| name == Displacement::NAME || name == Alive::NAME)?;
@@ -74,12 +79,13 @@ pub(super) fn check(world: &mut World) -> Result<(), Error> {
             }
         }
     }
+    tools::check(world, &pairs, &mut memory, (time, step));
     world.insert_resource(memory);
     Ok(())
 }
 
 fn message(found: &Overlap, one: &str, other: &str, meet: bool) -> String {
-    let at = found.at.to_array().map(|x| format!("{x:.4}")).join(", ");
+    let at = message_at(found.at);
     let Overlap { node, element, .. } = found;
     format!(
         "{one} and {other} overlap at ({at}) m: the surface of {one} at its node {node} is in element {element} of {other}; {}",
@@ -88,6 +94,11 @@ fn message(found: &Overlap, one: &str, other: &str, meet: bool) -> String {
             false => format!("nothing keeps them apart: `contacts: [Between(bodies: (\"{one}\", \"{other}\"))]` does"),
         }
     )
+}
+
+/// A place (m) as messages say it.
+fn message_at(at: DVec3) -> String {
+    at.to_array().map(|x| format!("{x:.4}")).join(", ")
 }
 
 fn place(world: &World, entity: Entity) -> Option<Placed<'_>> {

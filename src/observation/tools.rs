@@ -70,10 +70,7 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
         return Ok(reading);
     }
     let clock = *world.resource::<Clock>();
-    let now = match &clock.relaxation {
-        Some(relaxation) => world.resource::<Signals>().poses_at_share(relaxation.end, relaxation.share(clock.step)),
-        None => world.resource::<Signals>().poses_at(clock.time()),
-    };
+    let now = poses_now(world);
     // implicit steps have their forces at their ends
     let back = if clock.velocities_at_ends { 0.0 } else { 1.0 };
     let mut reading = ToolReading::default();
@@ -219,6 +216,15 @@ pub struct Felt {
     pub torque: DVec3,
     /// Whether it touched anything.
     pub in_contact: bool,
+}
+
+/// Where guided tools are now, by the first slots of their poses.
+pub(super) fn poses_now(world: &World) -> Vec<(usize, Pose)> {
+    let (clock, signals) = (world.resource::<Clock>(), world.resource::<Signals>());
+    match &clock.relaxation {
+        Some(relaxation) => signals.poses_at_share(relaxation.end, relaxation.share(clock.step)),
+        None => signals.poses_at(clock.time()),
+    }
 }
 
 /// What the tools of hands felt in so many steps; another batch begins for each tool that is asked for.

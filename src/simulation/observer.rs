@@ -36,8 +36,7 @@ pub(super) fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut
         removal: world.query::<&Alive>().iter(world).next().is_some(),
         implicit: scene.scene.is_implicit(),
         springs: scene.scene.contacts.iter().any(|contact| contact.law() != ContactLaw::Kinematic)
-            && clock.relaxation.is_none()
-            && !clock.velocities_at_ends,
+            && clock.relaxation.is_none(),
     };
     observer.to_rest = clock.relaxation.is_some();
     observer.follows_path = scene.scene.follows_path();

@@ -27,6 +27,7 @@ mod kinematic_rest;
 mod lost_surfaces;
 mod memory;
 mod rest;
+mod rims;
 mod static_friction;
 mod surfaces;
 mod sutures;

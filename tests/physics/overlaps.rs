@@ -93,3 +93,25 @@ fn elements_that_are_gone_overlap_with_nothing() {
         assert_eq!(warned(&run.options, "Hex8", &cells, &gone), []);
     }
 }
+
+/// A bead, narrower than faces are, is driven into a coarse block between its nodes, which contact does not see.
+#[test]
+fn a_tool_that_goes_into_a_body_between_its_nodes_is_warned_of_when_it_is_there() {
+    let guided = "path: [(t: 0, at: (0.0375, 0.0375, 0.11)), (t: 0.1, at: (0.0375, 0.0375, 0.05))]";
+    let free = "at: (0.0375, 0.0375, 0.11), free: (mass: 1e-3, velocity: (0, 0, -0.6))";
+    for run in &configurations() {
+        for tool in [guided, free] {
+            let rest = format!(
+                "tools: {{\"bead\": (shape: Sphere(radius: 0.002), {tool})}}, contacts: [Tool(tool: \"bead\", thin: true)]"
+            );
+            let told = warned(&run.options, "Hex8", &[(4, 0.1, [0.0; 3])], &rest);
+            assert_eq!(told.len(), 1, "{}, {tool}: {told:?}", run.name);
+            // half an edge below the surface from .04 s on, and looked at every .02 s
+            assert!((0.04 - 1e-9..0.061).contains(&told[0].time), "{}: {told:?}", run.name);
+            assert!(
+                told[0].part == "bead and b0" && told[0].message.contains("the tool bead is in b0 at ("),
+                "{told:?}"
+            );
+        }
+    }
+}

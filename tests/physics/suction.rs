@@ -56,6 +56,23 @@ fn a_closed_mouth_pulls_by_pressure_times_area() {
     }
 }
 
+/// Faces of the far side are turned away from the mouth: a reach through all of the plate sucks no more and no less.
+#[test]
+fn what_is_behind_the_tissue_is_not_sucked() {
+    for run in cpu_and_long_gpu() {
+        for elements in ["Hex8", "Tet4", "Tet10"] {
+            let of = |reach: &str| {
+                let mut simulation = run.start(&calm(elements).replace("reach: 5e-4", reach));
+                simulation.advance(25).unwrap();
+                let pull = -simulation.probe("felt").unwrap()[2];
+                assert!(pull > 0.5 * PRESSURE * PI * BORE * BORE, "{}, {elements}, {reach}: {pull} N", run.name);
+                bits_of(&mut simulation)
+            };
+            assert!(of("reach: 5e-4") == of("reach: 1e-2"), "{}, {elements}", run.name);
+        }
+    }
+}
+
 /// A plate that is drawn away with less than the mouth holds stays at it, with more it comes off.
 #[test]
 #[ignore = "long"]

@@ -73,6 +73,10 @@ fn what_is_wrong_with_a_suture_or_a_tie_is_told_where_it_stands() {
         (suture("(0.02, 0.02, 0.1)", ""), "5: error: both points of the suture are one place"),
         (suture("(0.08, 0.02, 0.1)", ", strength: -1"), "5: error: `strength` must be above 0, found -1 N"),
         (suture("(0.08, 0.02, 0.1)", ", tighten: -1"), "5: error: `tighten` must be 0 or above, found -1 m"),
+        (
+            suture("(0.08, 0.02, 0.1)", ", tighten: 0.07"),
+            "5: error: it draws in 7.000e-2 m of a thread that is 6.000e-2 m long | no thread is shorter than 0 m",
+        ),
         (good.replace("stiffness: 5", "stiffness: 0"), "5: error: `stiffness` must be above 0, found 0 N/m"),
         (good.replace("(at: (0.08", "(body: \"c\", at: (0.08"), "5: error: there is no body `c`"),
         (suture("(0.08, 0.02, 0.2)", ""), "5: error: nothing of `b` is there: the nearest place is 1.000e-1 m off"),
@@ -96,6 +100,10 @@ fn what_is_wrong_with_a_suture_or_a_tie_is_told_where_it_stands() {
     }
     let found = told(&good, "probes: {\"p\": (what: AttachmentForce(attachment: \"1\"))},");
     assert!(found.contains("3: error: there is no suture, tie or glue `1` | allowed: 0"), "{found}");
+    let tie = "Tie(name: \"t\", from: (at: (0.02, 0.02, 0.1)), to: (at: (0.03, 0.02, 0.1)))";
+    let found = told(tie, "probes: {\"p\": (what: SutureLength(attachment: \"t\"))},");
+    let wanted = "3: error: `t` is no suture: it has no length | what it bears is AttachmentForce(attachment: \"t\")";
+    assert!(found.contains(wanted), "{found}");
     let found = told(&suture("(0.08, 0.02, 0.1)", ", strength: 1"), "analysis: Static(),");
     assert!(found.contains("5: warning: nothing breaks in a static analysis"), "{found}");
 }

@@ -44,6 +44,36 @@ fn what_is_wrong_with_surfaces_is_told_with_what_is_allowed() {
 }
 
 #[test]
+fn who_meets_twice_is_told() {
+    let found = told(&format!("{MEET}, Between(bodies: (\"b\", \"a\"), friction: 0.1)"), "(0, 0, 0.11)");
+    assert_eq!(found, "5: error: `a` and `b` meet by contacts[0] already | leave one of both out");
+    let found = told(&format!("{MEET}, Itself(body: \"a\"), Itself(body: \"a\")"), "(0, 0, 0.11)");
+    assert_eq!(found, "5: error: `a` meets itself by contacts[1] already | leave one of both out");
+}
+
+#[test]
+fn bodies_nearer_than_their_thickness_are_told() {
+    let thick = |thickness: f64| format!("Between(bodies: (\"a\", \"b\"), thickness: {thickness:?})");
+    assert_eq!(told(&thick(9e-3), "(0, 0, 0.11)"), "");
+    let found = told(&thick(1.2e-2), "(0, 0, 0.11)");
+    let wanted = "5: warning: 25 nodes of `a` are nearer to `b` at the start than the `thickness` of 1.200e-2 m, the nearest by \
+                  2.000e-3 m";
+    assert!(found.contains(wanted) && found.contains("25 nodes of `b` are nearer to `a`"), "{found}");
+    let found = told(&thick(2.6e-2), "(0, 0, 0.11)");
+    assert!(found.contains("5: error: 25 nodes of `a` are nearer to `b` at the start"), "{found}");
+    assert!(found.contains("up to half an edge of a face, 1.423e-2 m, is pushed apart"), "{found}");
+}
+
+#[test]
+fn a_probe_of_what_nothing_touches_is_told() {
+    let probe = "Between(bodies: (\"a\", \"b\"))], probes: {\"p\": (body: \"a\", what: ContactForce, on: All)";
+    let found = told(&format!("{probe}}}, loads: ["), "(0, 0, 0.11)");
+    assert_eq!(found, "");
+    let found = told(&format!("Itself(body: \"b\"){}}}, loads: [", &probe[MEET.len()..]), "(0, 0, 0.11)");
+    assert!(found.contains("5: warning: nothing touches `a`: this will say so in every row"), "{found}");
+}
+
+#[test]
 fn points_are_nodes_or_those_of_faces() {
     let faces = "Between(bodies: (\"a\", \"b\"), edges: true, points: Faces)";
     assert_eq!(told(faces, "(0, 0, 0.11)"), "");

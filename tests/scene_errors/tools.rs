@@ -288,3 +288,53 @@ fn what_is_wrong_with_a_free_tool_is_told_with_what_is_allowed() {
     let found = told(&ball("free: (mass: 1)"), TOUCH, suction);
     assert!(found.contains("4: error: `rod` is `free`, and sucks"), "{found}");
 }
+
+#[test]
+fn a_tool_that_begins_in_a_body_between_its_nodes_is_refused() {
+    let bead = |z: f64| format!("(shape: Sphere(radius: 0.002), at: (0.0375, 0.0375, {z:?}))");
+    let thin = "Tool(tool: \"rod\", thin: true)";
+    let part = "Tool(tool: \"rod\", thin: false, on: Surface(normal: (0, 0, 1)))";
+    let deep = told(&bead(0.05), TOUCH, "");
+    assert!(deep.contains("error: the tool `rod` is in `b` at the start: its surface at ("), "{deep}");
+    assert!(deep.contains("more than half an edge of a face, 1.423e-2 m, below the surface of `b`"), "{deep}");
+    // above; within half an edge of the surface it is only said that it may slip between nodes
+    for (z, contact) in [(0.11, TOUCH), (0.095, TOUCH), (0.05, thin), (0.05, part)] {
+        let said = told(&bead(z), contact, "");
+        assert!(!said.contains("is in `b` at the start"), "{z}, {contact}: {said}");
+    }
+    let free = told("(shape: Sphere(radius: 0.002), at: (0.0375, 0.0375, 0.05), free: (mass: 1e-3))", TOUCH, "");
+    assert!(free.contains("error: the tool `rod` is in `b` at the start"), "{free}");
+}
+
+#[test]
+fn a_surface_that_meets_a_tool_twice_is_told() {
+    let above = "Tool(tool: \"rod\", friction: 0.1, on: Surface(normal: (0, 0, 1)))";
+    let below = "Tool(tool: \"rod\", on: Surface(normal: (0, 0, -1)))";
+    assert_eq!(told(ROD, &format!("{above}, {below}"), ""), "");
+    let twice = told(ROD, &format!("{TOUCH}, {TOUCH}"), "");
+    assert!(
+        twice.contains("5: error: 98 nodes of `b` would meet the tool `rod` twice: by contacts[0] and here"),
+        "{twice}"
+    );
+    let some = told(ROD, &format!("{TOUCH}, {above}"), "");
+    assert!(some.contains("25 nodes of `b` would meet the tool `rod` twice"), "{some}");
+    let free = "(shape: Sphere(radius: 0.06), at: (0.05, 0.05, 0.17), free: (mass: 1))";
+    let twice = told(free, &format!("{TOUCH}, {TOUCH}"), "");
+    assert!(twice.contains("98 nodes of `b` would meet the tool `rod` twice"), "{twice}");
+}
+
+#[test]
+fn what_can_do_nothing_is_told() {
+    let taken = |reach: &str| format!("removal: [(when: InTool(tool: \"rod\", reach: {reach}, rate: 1e-6))],");
+    let said = told(ROD, TOUCH, &taken("1e-4"));
+    assert!(
+        said.contains("warning: `rod` takes elements whose centroids are within 1.0e-4 m, and it stays outside"),
+        "{said}"
+    );
+    assert_eq!(told(ROD, TOUCH, &taken("2e-2")), "");
+    let named = "loads: [Gravity(body: \"b\", acceleration: (0, 0, -9.81))],";
+    let free = "(shape: Sphere(radius: 0.06), at: (0.05, 0.05, 0.17), free: (mass: 1))";
+    let said = told(free, TOUCH, named);
+    assert!(said.contains("warning: `rod` has no weight: gravity acts on bodies that are named"), "{said}");
+    assert_eq!(told(free, TOUCH, &named.replace("body: \"b\", ", "")), "");
+}

@@ -199,7 +199,8 @@ fn energies(summary: &Summary, page: &mut Page) {
         ("of constraints", energies.constraint_work),
         ("against internal forces", energies.internal_work),
         ("lost to damping", energies.damping_loss),
-        ("lost to contact", energies.contact_loss),
+        ("lost to contact", energies.contact_loss.filter(|loss| *loss >= 0.0)),
+        ("gained by contact", energies.contact_loss.filter(|loss| *loss < 0.0).map(f64::abs)),
     ];
     let works: Vec<(&str, f64)> = works.iter().filter_map(|(name, value)| Some((*name, (*value)?))).collect();
     if !works.is_empty() {
@@ -260,13 +261,19 @@ fn tools(summary: &Summary, page: &mut Page) {
             true => format!(", {} of it what it sucks", quantity(reading.suction.length(), "N")),
             false => String::new(),
         };
-        let (work, loss) = (quantity(reading.work, "J"), quantity(reading.loss, "J"));
+        let (work, loss) = (quantity(reading.work, "J"), taken(reading.loss));
         let nodes = counted(reading.nodes as u64, "node");
-        format!(
-            "{name} feels ({x}, {y}, {z}) of {nodes}{inside}{sucks}; it did {work}, lost to impact and friction {loss}"
-        )
+        format!("{name} feels ({x}, {y}, {z}) of {nodes}{inside}{sucks}; it did {work}, {loss}")
     });
     page.rows("tools", lines.collect::<Vec<_>>());
+}
+
+/// What contact has taken (J), or given: what is inside at the start is pushed out.
+fn taken(loss: f64) -> String {
+    match loss < 0.0 {
+        true => format!("gained by contact {}", quantity(-loss, "J")),
+        false => format!("lost to impact and friction {}", quantity(loss, "J")),
+    }
 }
 
 fn contacts(summary: &Summary, page: &mut Page) {
@@ -276,8 +283,8 @@ fn contacts(summary: &Summary, page: &mut Page) {
             true => format!(", the deepest {} inside", quantity(reading.penetration, "m")),
             false => String::new(),
         };
-        let (nodes, loss) = (counted(reading.nodes as u64, "node"), quantity(reading.loss, "J"));
-        format!("{name} feels ({x}, {y}, {z}) and touches with {nodes}{inside}; lost to impact and friction {loss}")
+        let (nodes, loss) = (counted(reading.nodes as u64, "node"), taken(reading.loss));
+        format!("{name} feels ({x}, {y}, {z}) and touches with {nodes}{inside}; {loss}")
     });
     page.rows("contacts", lines.collect::<Vec<_>>());
     if let Some(found) = &summary.surface_contact {

@@ -2,19 +2,28 @@
 
 use std::time::Duration;
 
-/// A quantity with a prefix and three digits: `218 µs`, `1.92 ms`.
+/// A quantity with a prefix and three digits: `218 µs`, `1.92 ms`; `277 mm³`, whose prefix counts three times.
 pub fn quantity(value: f64, unit: &str) -> String {
     const PREFIXES: [(f64, &str); 7] =
         [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
     if value == 0.0 || !value.is_finite() {
         return format!("{value} {unit}");
     }
+    let power = power(unit);
     let size = value.abs();
-    let fitting = PREFIXES.iter().find(|(factor, _)| size >= 0.9995 * factor);
-    match fitting {
+    // 0.4 mm³ is read more easily than 400 000 000 µm³
+    let least = if power == 1 { 0.9995 } else { 0.9995e-3 };
+    let mut fitting = PREFIXES.iter().map(|(factor, prefix)| (factor.powi(power), prefix));
+    match fitting.find(|(factor, _)| size >= least * factor) {
         Some((factor, prefix)) if size < 1e12 => format!("{} {prefix}{unit}", digits(value / factor)),
         _ => format!("{value:.2e} {unit}"),
     }
+}
+
+/// The power of what a prefix goes before: 3 of `m³` and `m³/s`, 1 of `m/s²`.
+fn power(unit: &str) -> i32 {
+    let first = unit.trim_start_matches(char::is_alphabetic);
+    [('²', 2), ('³', 3)].into_iter().find(|(sign, _)| first.starts_with(*sign)).map_or(1, |(_, power)| power)
 }
 
 /// Three digits: `218`, `1.92`, `0.51`; no zeros at the end.
@@ -84,6 +93,9 @@ mod tests {
         assert_eq!(quantity(2.181e-4, "s"), "218 µs");
         assert_eq!(quantity(-0.00192, "m"), "-1.92 mm");
         assert_eq!(quantity(9.999e-4, "s"), "1 ms");
+        assert_eq!((quantity(2.77e-7, "m³"), quantity(4e-10, "m³/s")), ("277 mm³".into(), "0.4 mm³/s".into()));
+        assert_eq!((quantity(1.03e-4, "m²"), quantity(2e-3, "m²")), ("103 mm²".into(), "0.002 m²".into()));
+        assert_eq!((quantity(9.81e-3, "m/s²"), quantity(1e-14, "m³")), ("9.81 mm/s²".into(), "10000 µm³".into()));
         assert_eq!(quantity(0.0, "J"), "0 J");
         assert_eq!(quantity(3e-14, "J"), "3.00e-14 J");
         assert_eq!(quantity(f64::NAN, "J"), "NaN J");

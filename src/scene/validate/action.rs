@@ -1,7 +1,7 @@
 //! Constraints, loads, removal and probes: what they select and what they do.
 
 use super::{Validator, per_copy, scene, select, show};
-use crate::scene::schema::{Axis, Constraint, Quantity, Scene, When};
+use crate::scene::schema::{Axis, Constraint, Contact, Probe, Quantity, Scene, When};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use glam::DVec3;
@@ -52,6 +52,7 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
             Quantity::Torque { axis, .. } => validator.has_direction(&what.name("axis"), *axis),
             _ => {}
         }
+        untouched(scene_, validator, &what, probe);
         if let (Some(_), Some(_)) = (probe.what.attachment(), &probe.on) {
             validator
                 .out
@@ -81,6 +82,22 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
                 }
             }
         }
+    }
+}
+
+/// Probes of what a body touches that nothing touches.
+fn untouched(scene_: &Scene, validator: &mut Validator, path: &Path, probe: &Probe) {
+    let Some(body) = probe.body.as_ref().or(scene_.bodies.keys().next()) else { return };
+    let is = |name: &Option<String>| name.as_ref().is_none_or(|name| name == body);
+    let touches = |contact: &Contact| match contact {
+        Contact::Tool { body: of, .. } | Contact::Itself { body: of, .. } => is(of),
+        Contact::Between { bodies: (a, b), .. } => a == body || b == body,
+    };
+    if probe.what.is_of_contact() && !scene_.contacts.iter().any(touches) {
+        validator
+            .out
+            .warn_at(path, format!("nothing touches `{body}`: this will say so in every row"))
+            .note("`contacts` says what meets what");
     }
 }
 

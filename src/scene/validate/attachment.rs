@@ -4,7 +4,7 @@ use super::names::body_named;
 use super::tool::named;
 use super::{Validator, scene, select};
 use crate::scene::limits::{MOST_SWEEPS, TOOLS_OF_A_BODY};
-use crate::scene::schema::{Attachment, Point, Scene};
+use crate::scene::schema::{Attachment, Point, Quantity, Scene};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use std::collections::{BTreeMap, BTreeSet};
@@ -41,11 +41,31 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
             Attachment::Glue { .. } => glue(scene_, validator, &path, attachment),
         }
     }
+    lengths(scene_, validator);
     for (name, probe) in &scene_.probes {
         let Some(attachment) = probe.what.attachment().filter(|name| !names.contains(*name)) else { continue };
         let path = scene("probes").name(name).name("what").name("attachment");
         let message = format!("there is no suture, tie or glue `{attachment}`");
         validator.out.error_at(path, message).notes(choice(attachment, names.iter().map(String::as_str)));
+    }
+}
+
+/// Threads have a length, and nothing else that holds.
+fn lengths(scene_: &Scene, validator: &mut Validator) {
+    let all = scene_.attachments.iter().enumerate();
+    let others: BTreeSet<String> = all
+        .filter(|(_, attachment)| !matches!(attachment, Attachment::Suture { .. }))
+        .filter_map(|(number, attachment)| attachment.name(number))
+        .collect();
+    for (name, probe) in &scene_.probes {
+        if let Quantity::SutureLength { attachment } = &probe.what
+            && others.contains(attachment)
+        {
+            let path = scene("probes").name(name).name("what");
+            let message = format!("`{attachment}` is no suture: it has no length");
+            let note = format!("what it bears is AttachmentForce(attachment: \"{attachment}\")");
+            validator.out.error_at(path, message).note(note);
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Tools that move freely: whether they weigh something, and what they cannot do.
 
 use super::{Validator, scene, show};
-use crate::scene::schema::{Attachment, Free, InitialState, Scene, Shape, Tool};
+use crate::scene::schema::{Attachment, Free, InitialState, Load, Scene, Shape, Tool};
 use crate::scene::syntax::Path;
 
 pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
@@ -11,6 +11,7 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
         weight(validator, &path, tool, free);
         validator.not_negative(&path.name("damping"), free.damping, "1/s");
         guided(validator, &path, tool);
+        weightless(scene_, validator, &path, name);
         let guides = "a free tool touches, and does no more: let a tool with a `path` do that";
         let used = [
             ("takes elements", scene_.removal.iter().any(|removal| removal.when.tool() == Some(name))),
@@ -60,6 +61,17 @@ fn weight(validator: &mut Validator, path: &Path, tool: &Tool, free: &Free) {
             .out
             .error_at(&path, "no body has such moments of inertia: one of them is more than the other two together")
             .note("left out, they are those of the shape, filled evenly");
+    }
+}
+
+/// Gravity of single bodies is none of tools.
+fn weightless(scene_: &Scene, validator: &mut Validator, path: &Path, name: &str) {
+    let gravity: Vec<&Load> = scene_.loads.iter().filter(|load| matches!(load, Load::Gravity { .. })).collect();
+    if !gravity.is_empty() && gravity.iter().all(|load| load.parts().body.is_some()) {
+        validator
+            .out
+            .warn_at(path, format!("`{name}` has no weight: gravity acts on bodies that are named"))
+            .note("`Gravity` without `body` acts on all bodies, and on free tools");
     }
 }
 

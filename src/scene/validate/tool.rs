@@ -185,6 +185,7 @@ fn contacts(scene_: &Scene, validator: &mut Validator) {
         law(scene_, validator, &path.name("law"), contact);
         let Contact::Tool { tool, body, on, .. } = contact else {
             surfaces(scene_, validator, &path, contact);
+            twice(scene_, validator, number);
             continue;
         };
         named(scene_, validator, &path, tool);
@@ -196,6 +197,26 @@ fn contacts(scene_: &Scene, validator: &mut Validator) {
             let message = format!("a body may meet at most {} tools", TOOLS_OF_A_BODY);
             validator.out.error_at(&path, message);
         }
+    }
+}
+
+/// Whether the same surfaces meet by an earlier contact: which of both would count?
+fn twice(scene_: &Scene, validator: &mut Validator, number: usize) {
+    let only = scene_.bodies.keys().next();
+    let pair = |contact: &Contact| match contact {
+        Contact::Tool { .. } => None,
+        Contact::Between { bodies: (a, b), .. } => Some([a.min(b).clone(), a.max(b).clone()]),
+        Contact::Itself { body, .. } => body.as_ref().or(only).map(|body| [body.clone(), body.clone()]),
+    };
+    let Some(here) = pair(&scene_.contacts[number]) else { return };
+    let earlier = scene_.contacts[..number].iter().position(|contact| pair(contact).as_ref() == Some(&here));
+    if let Some(earlier) = earlier {
+        let [a, b] = here;
+        let who = if a == b { format!("`{a}` meets itself") } else { format!("`{a}` and `{b}` meet") };
+        validator
+            .out
+            .error_at(scene("contacts").index(number), format!("{who} by contacts[{earlier}] already"))
+            .note("leave one of both out");
     }
 }
 

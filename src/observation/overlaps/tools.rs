@@ -1,0 +1,87 @@
+//! Rigid tools that are in bodies which they touch: contact is of nodes, and does not see what is between them.
+
+use super::{OVERLAP, Placed, message_at, near, place};
+use crate::components::*;
+use crate::contact::immersed;
+use crate::observation::tools::poses_now;
+use crate::tools::Geometry;
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// How deep in a body a tool's surface must be, in edges of faces: between nodes it dips into faces.
+const DEPTH: f64 = 0.5;
+
+/// A tool and a body that it may touch.
+pub(super) struct Pair {
+    tool: String,
+    geometry: Geometry,
+    /// In the scene (m).
+    pose: Pose,
+    body: Entity,
+    /// The body's name.
+    label: String,
+    /// Of the body's faces (m).
+    edge: f64,
+}
+
+/// Warns once of each tool in a body.
+pub(super) fn check(world: &World, pairs: &[Pair], memory: &mut GuardMemory, (time, step): (f64, u64)) {
+    for pair in pairs {
+        let part = format!("{} and {}", pair.tool, pair.label);
+        let is_told = memory.warnings.iter().any(|notice| notice.criterion == OVERLAP && notice.part == part);
+        let Some((middle, radius)) = pair.geometry.bounding_sphere() else { continue };
+        let Some(body) = place(world, pair.body).filter(|_| !is_told) else { continue };
+        // what is cut off there is far from the tool
+        let around = DVec3::splat(radius + 2.0 * DEPTH * pair.edge);
+        let middle = pair.pose.place(middle);
+        let near = near(world, &body, middle - around, middle + around);
+        if near.elements.is_empty() {
+            continue;
+        }
+        if let Some((at, element)) = immersed(&pair.geometry, &pair.pose, &near.mesh, DEPTH * pair.edge) {
+            let message = message(pair, &body, (at, near.elements[element]));
+            let criterion = OVERLAP.to_string();
+            memory.warnings.push(Notice { criterion, part, time, step, value: 1.0, limit: 0.0, message });
+        }
+    }
+}
+
+fn message(Pair { tool, edge, .. }: &Pair, body: &Placed<'_>, (at, element): (DVec3, usize)) -> String {
+    format!(
+        "the tool {tool} is in {} at ({}) m: its surface is in element {}, more than half an edge of a face, {:.3e} m, \
+         below that of {}; finer faces, a thicker tool or slower motion keep it out",
+        body.label,
+        message_at(at),
+        body.authoring.element_ids.of(element),
+        DEPTH * edge,
+        body.label,
+    )
+}
+
+/// All tools and the bodies that they may touch, by their names.
+pub(super) fn pairs(world: &mut World) -> Vec<Pair> {
+    let mut all = Vec::new();
+    let now = poses_now(world);
+    let mut bodies = world.query::<(Entity, &Label, &ToolContacts)>();
+    for (body, label, contacts) in bodies.iter(world) {
+        for contact in &contacts.tools {
+            let Some((_, pose)) = now.iter().find(|(slot, _)| *slot == contact.signal) else { continue };
+            let pose = Pose { at: pose.at + contacts.reference, ..*pose };
+            let (tool, geometry) = (contact.tool.clone(), contact.geometry.clone());
+            all.push(Pair { tool, geometry, pose, body, label: label.0.clone(), edge: contacts.edge });
+        }
+    }
+    if let (Some(tools), Some(motions)) = (world.get_resource::<FreeTools>(), world.get_resource::<FreeMotions>()) {
+        for (tool, state) in tools.all.iter().zip(&motions.all) {
+            let pose = tool.pose(&state.motion);
+            let pose = Pose { at: pose.at + tools.reference, ..pose };
+            let pair = |met: &MetBody| {
+                let (tool, geometry) = (tool.name.clone(), tool.geometry.clone());
+                Pair { tool, geometry, pose, body: met.body, label: met.name.clone(), edge: met.edge }
+            };
+            all.extend(tool.meets.iter().map(pair));
+        }
+    }
+    all.sort_by(|a, b| (&a.tool, &a.label).cmp(&(&b.tool, &b.label)));
+    all
+}
