@@ -15,8 +15,8 @@ use bevy_ecs::prelude::*;
 use glam::DVec3;
 
 /// Exposed faces in the mouth that are turned to it are sucked, those at its edge by the share that is within: in every
-/// tenth step it is looked which those are, and what share χ of the mouth they close, seen along its axis. An open mouth leaks: the
-/// pressure goes to Δp χ², and follows in the time that the scene names.
+/// tenth step it is looked which those are, and what share χ of the mouth they close, seen along its axis. An open
+/// mouth leaks: the pressure goes to Δp χ², and follows in the time that the scene names.
 ///
 /// A face is exposed while its element is there and its neighbour's is not: what removal bares is sucked at once.
 pub fn system() -> System {

@@ -109,8 +109,8 @@ fn meets(
     all
 }
 
-/// Looks for nodes inside free tools at the start, and tells whether there are some; and for tools that are too fast for
-/// the step.
+/// Looks for nodes inside free tools at the start, and tells whether there are some; and for tools that are too fast
+/// for the step.
 pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Diagnostics) -> bool {
     let mut are_inside = false;
     let (Some(free), Some(motions)) = (world.get_resource::<FreeTools>(), world.get_resource::<FreeMotions>()) else {

@@ -22,9 +22,8 @@ const BELOW: f64 = 0.05;
 /// Nodes that a complaint names.
 const NAMED: usize = 10;
 
-/// Looks for nodes that are inside another body, or another part of their own, at the start, and tells whether there are
-/// some: deep ones are an error.
-/// Nodes of one that never meet what is near them at rest are told, too.
+/// Looks for nodes that are inside another body, or another part of their own, at the start, and tells whether there
+/// are some: deep ones are an error. Nodes of one that never meet what is near them at rest are told, too.
 pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Diagnostics) -> bool {
     let Some(contacts) = world.get_resource::<SurfaceContacts>() else { return false };
     let mut are_inside = false;
@@ -213,8 +212,8 @@ fn overlap(
     true
 }
 
-/// Tells of nodes of one body that are nearer to another than the thickness (m) between them, and whether there are some:
-/// those are pushed apart, like what is inside.
+/// Tells of nodes of one body that are nearer to another than the thickness (m) between them, and whether there are
+/// some: those are pushed apart, like what is inside.
 fn too_near(
     [(of, one), (to, other)]: [(&String, &Outside); 2],
     edge: f64,

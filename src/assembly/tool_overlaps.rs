@@ -1,5 +1,5 @@
-//! Bodies and rigid tools before the first step: which nodes are inside a tool, and whether a tool is in a body, between
-//! its nodes.
+//! Bodies and rigid tools before the first step: which nodes are inside a tool, and whether a tool is in a body,
+//! between its nodes.
 
 use super::BodyParts;
 use super::surface_overlaps::at_start;

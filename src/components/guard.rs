@@ -4,8 +4,7 @@ use bevy_ecs::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Nodes are inside tools or other bodies at the start: pushing them out does work on what they are in. There where it is
-/// so.
+/// There where nodes are inside tools or other bodies at the start: pushing them out does work on what they are in.
 #[derive(Resource, Clone, Copy, Debug)]
 pub struct BeginsInside;
 

@@ -1,5 +1,5 @@
-//! Whether a rigid tool is in a body. Contact with tools is of nodes: what of a tool is in a body between them meets none,
-//! and must be known.
+//! Whether a rigid tool is in a body. Contact with tools is of nodes: what of a tool is in a body between them meets
+//! none, and must be known.
 
 use super::Tree;
 use crate::components::Pose;

@@ -1,5 +1,5 @@
-//! Bodies that are where others are, or rigid tools. Nothing keeps bodies apart that no contact is between: what they do
-//! to each other then is nothing, and that must be known.
+//! Bodies that are where others are, or rigid tools. Nothing keeps bodies apart that no contact is between: what they
+//! do to each other then is nothing, and that must be known.
 
 mod tools;
 
@@ -39,8 +39,8 @@ struct Placed<'a> {
     meets: bool,
 }
 
-/// Looks for pairs of bodies that overlap, and for tools in bodies, and warns once of each. Boxes around bodies are compared first: those of one
-/// body, or apart from each other, take no time.
+/// Looks for pairs of bodies that overlap, and for tools in bodies, and warns once of each. Boxes around bodies are
+/// compared first: those of one body, or apart from each other, take no time.
 ///
 /// # Errors
 /// What the GPU says.

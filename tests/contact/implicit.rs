@@ -264,3 +264,33 @@ fn bits_of_contact_do_not_depend_on_threads_and_pauses() {
         bits_do_not_depend(&text, &["low", "high"], [0.1, 0.2], [none, none]);
     }
 }
+
+/// In steps of 10 ms a block falls .8 mm into another before anybody looks, and springs lift it out: that is warned of.
+/// In steps of 1 ms it is seen in time, and contact takes energy.
+#[test]
+fn springs_that_make_energy_in_long_steps_are_warned_of() {
+    for (step, makes) in [(0.01, true), (1e-3, false)] {
+        let mut simulation = start(
+            &format!(
+                "(duration: 0.2, solver: Implicit(step: {step:?}), bodies: {{
+                    \"low\": (mesh: Box(size: (0.04, 0.04, 0.01), cells: (8, 8, 2)), material: \"m\"),
+                    \"top\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (4, 4, 4)), material: \"m\",
+                        translate: (0.0091, 0.0087, 0.0101))}},
+                materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e4, poisson: 0.45))}},
+                constraints: [Fixed(body: \"low\", on: Plane(normal: (0, 0, 1), at: 0))],
+                loads: [Gravity(acceleration: (0, 0, -9.81))],
+                contacts: [Between(bodies: (\"low\", \"top\"), law: Penalty(share: 0.5))])"
+            ),
+            Precision::F64,
+            1,
+        );
+        simulation.advance_to(0.2).unwrap();
+        let loss = simulation.energies().unwrap().contact_loss.unwrap();
+        let summary = simulation.summary("").unwrap();
+        let told: Vec<_> = summary.guards.warnings.iter().filter(|notice| notice.criterion == "contact").collect();
+        println!("{step} s: {loss:.3e} J lost, {told:?}");
+        assert_eq!(!told.is_empty(), makes, "{step} s: {told:?}");
+        assert_eq!(loss < -1e-5, makes, "{step} s: {loss} J");
+        assert!(told.iter().all(|notice| notice.message.contains("lower `step` of the solver")), "{told:?}");
+    }
+}
