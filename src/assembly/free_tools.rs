@@ -1,7 +1,7 @@
 //! Tools that move freely: what they weigh, where they begin, and which bodies they meet.
 
 use super::contacts::{
-    FARTHEST, Standing, bounds, edge, geometries, inside, may_slip, motion, reference, rows, settling,
+    FARTHEST, Standing, bounds, edge, geometries, inside, may_slip, motion, reference, rows, settling, sweeps_beyond,
 };
 use super::{Assembly, loads};
 use crate::components::*;
@@ -99,7 +99,8 @@ fn meets(
                 may_slip(tool, name, (geometry, edge), diagnostics);
             }
             let (settling, friction) = (settling(body, edge, world), contact.friction());
-            all.push(MetBody { body: body.entity, name: name.clone(), rows, friction, edge, settling });
+            let swept = sweeps_beyond(geometry, edge);
+            all.push(MetBody { body: body.entity, name: name.clone(), rows, friction, edge, settling, swept });
         }
     }
     all
