@@ -1,15 +1,11 @@
 // What closed tools hold goes where they take it, whatever pushes, a thread a node that may be held; between
-// surface_contact_foresee.wgsl and surface_contact.wgsl, twin of systems/grasp/foreseen.rs. Held it is by grasp.wgsl.
-// GRASPS, NUMBERS and HOLDABLE are generated.
-struct HoldRow {
-    closed: u32, // the slot that says whether it is
-    signal: u32, // first of the slots that say where it is
-    unused: u32,
-    unused_too: u32,
-}
-@group(0) @binding(0) var<uniform> holds: array<HoldRow, GRASPS>;
-// seven a node: its number among surfaces, its row, its place among who may be held, a bit for each grasp, bits of its
-// place at rest (m)
+// surface_contact_foresee.wgsl and surface_contact.wgsl or glue.wgsl, twin of systems/grasp/foreseen.rs. Held it is by
+// grasp.wgsl. GRASPS, NUMBERS and HOLDABLE are generated.
+
+// two a grasp: the slot that says whether it is closed, and the first of those that say where its tool is
+@group(0) @binding(0) var<storage, read> holds: array<u32>;
+// seven a node: its number among those foreseen, its row, its place among who may be held, a bit for each grasp, bits
+// of its place at rest (m)
 @group(0) @binding(0) var<storage, read> holdable: array<u32>;
 @group(0) @binding(0) var<storage, read> tool_hold: array<f32>;
 @group(0) @binding(0) var<storage, read> displacement: array<f32>;
@@ -36,11 +32,11 @@ fn surface_contact_hold(@builtin(global_invocation_id) id: vec3<u32>, @builtin(n
         let number = left - 1u;
         let own = NUMBERS * (GRASPS * holdable[first + 2u] + number);
         let takes_part = ((holdable[first + 3u] >> number) & 1u) == 1u && tool_hold[own + 3u] == HELD;
-        if !takes_part || step.signals[holds[number].closed].y <= 0.0 {
+        if !takes_part || step.signals[holds[2u * number]].y <= 0.0 {
             continue;
         }
         let y = vec4<f32>(tool_hold[own + 6u], tool_hold[own + 7u], tool_hold[own + 8u], 1.0);
-        let pose = holds[number].signal;
+        let pose = holds[2u * number + 1u];
         let there = vec3<f32>(
             dot(step.signals[pose], y), dot(step.signals[pose + 1u], y), dot(step.signals[pose + 2u], y));
         let gap = select(vec3<f32>(0.0), there - place - next, free);

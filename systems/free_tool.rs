@@ -159,7 +159,7 @@ impl ToolStep<'_> {
                 let stuck = touched.binary_search_by_key(&node, |touch| touch.node).is_ok_and(|i| touched[i].sticks);
                 let friction = met.friction[usize::from(!stuck)];
                 let (arm, out) = (place - self.before.place, met.settling * time_step);
-                all.push(Near { node, place, foreseen, arm, friction, edge: met.edge, out });
+                all.push(Near { node, place, foreseen, arm, friction, edge: met.edge, swept: met.swept, out });
             }
         }
         all

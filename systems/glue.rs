@@ -17,10 +17,11 @@ use glam::DVec3;
 pub(crate) use solved::find as find_ties;
 use work::Work;
 
-/// Like `surface_contact`, with vectors and both signs: each node's next step is predicted, and the forces are found
-/// that let points end where they are on their faces (see [`TieSet::solve`](crate::contact::TieSet::solve)), and are
-/// added to the loads. There is no stiffness to choose, and the stable step stays as it is. A tie whose force is too
-/// large for it breaks in that step, and bears nothing any more.
+/// Like `surface_contact`, with vectors and both signs: each node's next step is predicted, of what closed tools hold
+/// as they take it, and the forces are found that let points end where they are on their faces (see
+/// [`TieSet::solve`](crate::contact::TieSet::solve)), and are added to the loads. There is no stiffness to choose, and
+/// the stable step stays as it is. A tie whose force is too large for it breaks in that step, and bears nothing any
+/// more.
 pub fn system() -> System {
     let system = System::built_in(
         "glue",
@@ -74,11 +75,13 @@ const WENT: f64 = 2.0;
 #[query_data(mutable)]
 struct TiedColumns {
     nodes: SlicedColumns,
+    /// Where tools may hold its nodes.
+    grip: Option<(&'static Grasps, &'static ToolHold)>,
     state: Option<&'static mut TieState>,
 }
 
 fn glue(
-    clock: Res<Clock>,
+    (clock, signals): (Res<Clock>, Res<Signals>),
     glue: Res<Glue>,
     mut work: Local<Work>,
     mut bodies: Query<TiedColumns>,
@@ -88,20 +91,20 @@ fn glue(
         *work = Work::of(&glue);
     }
     match bodies.iter().next().map(|columns| columns.nodes.u.precision()) {
-        Some(Precision::F32) => step::<f32>(&clock, &glue, &mut work, (&mut bodies, &blocks)),
-        Some(Precision::F64) => step::<f64>(&clock, &glue, &mut work, (&mut bodies, &blocks)),
+        Some(Precision::F32) => step::<f32>((&clock, &signals), &glue, &mut work, (&mut bodies, &blocks)),
+        Some(Precision::F64) => step::<f64>((&clock, &signals), &glue, &mut work, (&mut bodies, &blocks)),
         None => Ok(()),
     }
 }
 
 fn step<T: Scalar>(
-    clock: &Clock,
+    (clock, signals): (&Clock, &Signals),
     glue: &Glue,
     work: &mut Work,
     (bodies, blocks): (&mut Query<TiedColumns>, &Query<&Alive>),
 ) -> Result<(), Error> {
     let coefficients = IntegrationCoefficients::<f64>::of(clock);
-    if !work.place::<T>(glue, &coefficients, bodies) {
+    if !work.place::<T>(glue, (&coefficients, signals), bodies) {
         return Err(missing("a column of a body"));
     }
     for (number, tie) in glue.ties.iter().enumerate() {

@@ -20,7 +20,7 @@ use super::repeat::Repeat;
 use super::system::{Phase, System};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
-use crate::contact::{Lists, Near, Neighbourhoods, Point, Shortlist, Stays, Surfaces, Tree};
+use crate::contact::{Faced, Lists, Near, Neighbourhoods, Point, Shortlist, Stays, Surfaces, Tree};
 use crate::error::{Error, missing};
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
@@ -170,7 +170,8 @@ struct Surface {
     kept_by_task: Vec<crate::contact::Kept>,
     reaches: Vec<f64>,
     gathered: gather::Gathered,
-    /// What may touch in an implicit step.
+    /// What points face in an implicit step, in the order of points, and what may touch.
+    faced_by_task: Vec<Vec<(u32, Faced)>>,
     pairs: Vec<solved::Pair>,
     /// Of each contact of an implicit step what it did at the end of the last one, and its slopes.
     solved: Vec<solved::Solved>,

@@ -4,7 +4,7 @@ mod in_step;
 mod row;
 mod solved;
 mod stage;
-mod sweep;
+pub(super) mod sweep;
 
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
@@ -245,7 +245,7 @@ impl ToolContacts {
         let of_tool = pose.inverse(end);
         let here = earlier.inverse(place);
         let plane = sweep::first_touch(&contact.geometry, contact.swept, [here, of_tool]);
-        let (distance, normal) = Touch::surface(plane, contact, of_tool);
+        let (distance, normal) = sweep::surface(plane, &contact.geometry, of_tool);
         if distance > self.edge {
             return None;
         }
@@ -298,7 +298,8 @@ impl ToolContacts {
                 if turn > 0 && !touch.springs {
                     let tool = &step.tools[touch.tool];
                     let of_tool = tool.pose.inverse(place + predicted + sum);
-                    let (distance, normal) = Touch::surface(touch.plane, &self.tools[touch.tool], of_tool);
+                    let geometry = &self.tools[touch.tool].geometry;
+                    let (distance, normal) = sweep::surface(touch.plane, geometry, of_tool);
                     touch.normal = tool.pose.rotation * normal;
                     touch.gap = distance - touch.target;
                     touch.tool_step = tool.change.place(of_tool);

@@ -85,7 +85,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
 
 /// How far a node may go in a step against a tool (m) with only its end looked at: who goes half as far as the tool is
 /// thick from its middle is still nearest to the side that it came through. 0: it may be any way.
-fn sweeps_beyond(geometry: &Geometry, edge: f64) -> f64 {
+pub(super) fn sweeps_beyond(geometry: &Geometry, edge: f64) -> f64 {
     geometry.smallest_radius().map_or(0.0, |radius| (SAFELY * radius).max(1e-6 * edge))
 }
 

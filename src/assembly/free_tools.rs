@@ -1,6 +1,8 @@
 //! Tools that move freely: what they weigh, where they begin, and which bodies they meet.
 
-use super::contacts::{FARTHEST, bounds, edge, geometries, may_slip, meets_twice, motion, reference, rows, settling};
+use super::contacts::{
+    FARTHEST, bounds, edge, geometries, may_slip, meets_twice, motion, reference, rows, settling, sweeps_beyond,
+};
 use super::tool_overlaps::{self, Standing};
 use super::{Assembly, loads};
 use crate::components::*;
@@ -103,7 +105,8 @@ fn meets(
             }
             numbers.push(number);
             let (settling, friction) = (settling(body, edge, world), contact.friction());
-            all.push(MetBody { body: body.entity, name: name.clone(), rows, friction, edge, settling });
+            let swept = sweeps_beyond(geometry, edge);
+            all.push(MetBody { body: body.entity, name: name.clone(), rows, friction, edge, settling, swept });
         }
     }
     all

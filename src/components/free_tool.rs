@@ -40,6 +40,8 @@ pub struct MetBody {
     pub edge: f64,
     /// How fast nodes that are inside the tool at the start are pushed out (m/s).
     pub settling: f64,
+    /// How far a node must go in a step against the tool (m) for its way to be looked at, and not only where it ends.
+    pub swept: f64,
 }
 
 /// All free tools of a scene. What changes of them is in [`FreeMotions`].

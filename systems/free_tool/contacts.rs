@@ -3,6 +3,7 @@
 use super::{Repeat, Response, ToolStep};
 use crate::backend::cpu::Foreseen;
 use crate::components::{FreeTool, FreeTouch, Pose};
+use crate::systems::tool_contact::sweep::{self, Plane, first_touch};
 use glam::{DMat3, DVec3};
 
 /// How often all contacts of a tool take turns.
@@ -30,6 +31,8 @@ pub(super) struct Near {
     pub friction: f64,
     /// Length of an edge of its surface (m).
     pub edge: f64,
+    /// How far it may go against the tool (m) with only its end looked at.
+    pub swept: f64,
     /// How far it comes out in this step, if it is inside (m).
     pub out: f64,
 }
@@ -45,6 +48,10 @@ pub(super) struct Solved {
 /// A contact: forces on the node (N).
 struct Contact {
     near: Near,
+    /// Where it is in the tool's frame (m), and where its way first meets the tool, if it could be through it where it
+    /// ends.
+    here: DVec3,
+    plane: Option<Plane>,
     /// Where it may be: the distance from the surface (m), 0 but for nodes that are inside already.
     target: f64,
     outwards: DVec3,
@@ -88,12 +95,12 @@ pub(super) fn solve(step: &ToolStep<'_>, near: Vec<Near>) -> Solved {
     let (dt, inertia) = (response.time_step, &tool.inertia);
     let begin = tool.pose(&step.before);
     let mut motion = step.free;
-    let mut contacts: Vec<Contact> = near.into_iter().map(Contact::new).collect();
+    let mut contacts: Vec<Contact> = near.into_iter().map(|near| Contact::new(near, &begin)).collect();
     for sweep in 0..SWEEPS {
         let pose = tool.pose(&motion.after(dt, inertia));
         let change = pose.less(&begin);
         if sweep == 0 {
-            contacts.retain_mut(|contact| contact.begins(tool, &begin, &pose));
+            contacts.retain_mut(|contact| contact.begins(tool, &pose));
         }
         // how the tool has gone on since this pose (m, rad)
         let (mut way, mut turn) = (DVec3::ZERO, DVec3::ZERO);
@@ -102,7 +109,7 @@ pub(super) fn solve(step: &ToolStep<'_>, near: Vec<Near>) -> Solved {
             let arm = contact.near.arm;
             let further = way + turn.cross(arm);
             let y = pose.inverse(contact.near.place + contact.step() - further);
-            let (distance, normal) = tool.geometry.distance(y);
+            let (distance, normal) = contact.surface(tool, y);
             let normal = pose.rotation * normal;
             let compliance = contact.compliance(response);
             let before = contact.force();
@@ -140,17 +147,26 @@ fn self_step(near: &Near, force: DVec3, response: &Response) -> DVec3 {
 }
 
 impl Contact {
-    fn new(near: Near) -> Self {
-        let zero = DVec3::ZERO;
-        Self { near, target: 0.0, outwards: zero, push: 0.0, tangential: zero, slides: true }
+    fn new(near: Near, begin: &Pose) -> Self {
+        let (zero, here) = (DVec3::ZERO, begin.inverse(near.place));
+        Self { near, here, plane: None, target: 0.0, outwards: zero, push: 0.0, tangential: zero, slides: true }
+    }
+
+    /// How far its node is outside of what it must stay outside of (m) where it ends in the tool's frame, and which way
+    /// out is. The plane that its way meets stays in the tool's frame, as the tool gives way.
+    fn surface(&mut self, tool: &FreeTool, end: DVec3) -> (f64, DVec3) {
+        if self.plane.is_none() {
+            self.plane = first_touch(&tool.geometry, self.near.swept, [self.here, end]);
+        }
+        sweep::surface(self.plane, &tool.geometry, end)
     }
 
     /// Whether it may come to touch: its node ends less than an edge from the tool. Who is inside already comes out by
     /// and by.
-    fn begins(&mut self, tool: &FreeTool, begin: &Pose, end: &Pose) -> bool {
-        let distance = tool.geometry.distance(end.inverse(self.near.place + self.near.foreseen.step)).0;
+    fn begins(&mut self, tool: &FreeTool, pose: &Pose) -> bool {
+        let distance = self.surface(tool, pose.inverse(self.near.place + self.near.foreseen.step)).0;
         if distance < 0.0 {
-            let now = tool.geometry.distance(begin.inverse(self.near.place)).0;
+            let now = tool.geometry.distance(self.here).0;
             self.target = (now + self.near.out).min(0.0);
         }
         distance <= self.near.edge

@@ -1,7 +1,8 @@
 //! The kernels of `glue`. In a step, for each body: where its tied nodes are (`shaders/glue_place.wgsl`), and where
-//! they would go (`surface_contact_foresee`); how far its ties are off (`glue`). Then for all: into how many shares
-//! masses are split (`glue_share`), and in each sweep the forces (`glue_correct`) and what they do to nodes
-//! (`glue_apply`). At last, for each body: what becomes of its ties (`glue_note`), and its loads (`glue_push`).
+//! they would go (`surface_contact_foresee`, and `surface_contact_hold` where tools may hold it); how far its ties are
+//! off (`glue`). Then for all: into how many shares masses are split (`glue_share`), and in each sweep the forces
+//! (`glue_correct`) and what they do to nodes (`glue_apply`). At last, for each body: what becomes of its ties
+//! (`glue_note`), and its loads (`glue_push`).
 
 use super::work::{TieNodes, nodes_of, parts_of};
 use super::{BROKE, HOLDS};
@@ -200,6 +201,9 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
         all.push(place.bind("glue_rows", rows).threads(of.node_count));
         let foreseen = ForeseenNodes::new([rows, shared.nodes], [of.first_node, of.node_count], buffers);
         all.push(foreseen.foresee("glue_foresee", body, world, buffers));
+        let own = &tied.nodes[of.first_node as usize..][..of.node_count as usize];
+        let place = |row| own.binary_search_by_key(&row, |node| node.1).ok().map(|place| of.first_node + place as u32);
+        all.extend(foreseen.hold("glue_hold", body, place, world, buffers));
     }
     let of_ties = |entry, text: Fragment, body, of: GlueTies, uniform, buffers: &mut dyn Buffers| {
         let kernel = shared.with_nodes(shared.of_ties(entry, text, uniform, world));

@@ -5,6 +5,7 @@ use crate::backend::cpu::IntegrationCoefficients;
 use crate::components::*;
 use crate::contact::{Tie, TieSet};
 use crate::math::Scalar;
+use crate::systems::grasp::Grip;
 use crate::systems::node_slices::{NodeSlices, vector};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -89,14 +90,17 @@ impl Work {
     pub fn place<T: Scalar>(
         &mut self,
         glue: &Glue,
-        coefficients: &IntegrationCoefficients<f64>,
+        (coefficients, signals): (&IntegrationCoefficients<f64>, &Signals),
         bodies: &mut Query<TiedColumns>,
     ) -> bool {
         let mut at = 0;
         for of_body in self.nodes.chunk_by(|one, other| one.0 == other.0) {
-            let Ok(TiedColumnsItem { nodes, .. }) = bodies.get_mut(glue.bodies[of_body[0].0]) else { return false };
+            let Ok(TiedColumnsItem { nodes, grip, .. }) = bodies.get_mut(glue.bodies[of_body[0].0]) else {
+                return false;
+            };
             let masses = nodes.mass.slice::<T>();
             let columns = NodeSlices::<T>::of(nodes);
+            let first = at;
             for row in of_body.iter().map(|&(_, row)| row as usize) {
                 self.places[at] = columns.rest[row] - glue.reference + vector(columns.u, row);
                 self.masses[at] = masses[row].to_f64();
@@ -106,6 +110,12 @@ impl Work {
                 self.set.responses[at] = foreseen.free / foreseen.to_force;
                 at += 1;
             }
+            let Some(grip) = grip.map(Grip::of) else { continue };
+            let place_of = |row| of_body.binary_search_by_key(&row, |node| node.1).ok().map(|place| first + place);
+            let set = &mut self.set;
+            grip.each_held(&columns, (coefficients, signals), place_of, |at, step| {
+                (set.steps[at], set.responses[at]) = (step, DVec3::ZERO);
+            });
         }
         true
     }

@@ -54,7 +54,7 @@ pub(super) fn slices<'a, T: Scalar>(
             force: columns.force.into_inner().slice_mut(),
             touch: columns.touch.into_inner().slice_mut(),
             face_touch: columns.face_touch.map_or(&mut [], |touch| touch.into_inner().slice_mut()),
-            grip: columns.grip.map(|(grasps, hold)| Grip { grasps, numbers: hold.slice() }),
+            grip: columns.grip.map(Grip::of),
         };
         all.push((contacts.surface.number_of(entity), of_body));
     }

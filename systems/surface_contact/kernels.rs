@@ -9,7 +9,7 @@
 use super::device::{MOTION_WORDS, SurfaceContact, find, is_on_device, note};
 use super::gather::OUT;
 use super::meet::{FACES, FREE, SLIDES, STICKS};
-use super::{Meeting, SurfaceContacts, hold};
+use super::{Meeting, SurfaceContacts};
 use crate::backend::Buffers;
 use crate::backend::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
 use crate::backend::step::with_step;
@@ -209,8 +209,10 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
         })
         .collect();
     for (number, &(body, of)) in of_bodies.iter().enumerate() {
-        all.extend(before(&shared, body, of, world, buffers));
-        all.extend(hold::kernel(&contacts, number, shared.nodes, world, buffers));
+        let (kernels, foreseen) = before(&shared, body, of, world, buffers);
+        all.extend(kernels);
+        let node = |row| contacts.surface.nodes.binary_search(&(number as u32, row)).ok().map(|node| node as u32);
+        all.extend(foreseen.hold("surface_contact_hold", body, node, world, buffers));
     }
     all.extend(points.iter().filter(|points| points.face).map(|points| shared.face(points, world, buffers)));
     let surface = buffers.uniform("surface_contact".into(), &whole.bytes());
@@ -248,7 +250,13 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
 }
 
 /// Where a body's surface is, and where it would go.
-fn before(shared: &Shared, body: Entity, of: SurfaceContact, world: &World, buffers: &mut dyn Buffers) -> [Kernel; 2] {
+fn before(
+    shared: &Shared,
+    body: Entity,
+    of: SurfaceContact,
+    world: &World,
+    buffers: &mut dyn Buffers,
+) -> ([Kernel; 2], ForeseenNodes) {
     let of_body = SurfaceBody { first: of.first, count: of.count, displacements: of.displacements };
     let of_body = buffers.uniform("surface of a body".into(), &of_body.bytes());
     let place = Kernel::new("surface_contact_place", "surface_contact_place")
@@ -264,7 +272,7 @@ fn before(shared: &Shared, body: Entity, of: SurfaceContact, world: &World, buff
         .bind(Displacement::NAME, buffers.column(body, Displacement::NAME))
         .bind(DisplacementIncrement::NAME, buffers.column(body, DisplacementIncrement::NAME));
     let nodes = ForeseenNodes { rows: shared.rows, nodes: shared.nodes, of_body, count: of.count };
-    [place, nodes.foresee("surface_contact_foresee", body, world, buffers)]
+    ([place, nodes.foresee("surface_contact_foresee", body, world, buffers)], nodes)
 }
 
 /// Nodes of a body whose next steps are wanted.
@@ -273,7 +281,7 @@ pub(in crate::systems) struct ForeseenNodes {
     rows: BufferId,
     /// Twelve numbers a node: three of whoever asks, the next step, the last step, which must be there already, and the
     /// response to forces.
-    nodes: BufferId,
+    pub(super) nodes: BufferId,
     /// A [`SurfaceBody`].
     of_body: BufferId,
     count: u32,

@@ -6,7 +6,7 @@ use super::meet::{FACES, SLIDES, STICKS, forget, push, release};
 use super::{Meeting, SurfaceContacts, crossings, faced};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
-use crate::contact::{Contact, Faced, Parts, Point};
+use crate::contact::{Contact, Parts, Point};
 use crate::error::Error;
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
@@ -91,7 +91,9 @@ pub(super) fn pair<T: Scalar>(
     reach: f64,
     bodies: &[BodySlices<'_, T>],
 ) {
-    let mut found: Vec<Vec<(u32, Faced)>> = vec![Vec::new(); faced::tasks(contacts)];
+    let mut found = std::mem::take(&mut contacts.surface.faced_by_task);
+    found.resize_with(found.len().max(faced::tasks(contacts)), Vec::new);
+    found.iter_mut().for_each(Vec::clear);
     faced::face(contacts, reach, cpu, found.iter_mut(), |_, point, faced, found| found.push((point, *faced)));
     crossings::find(contacts, reach);
     let in_step = InStep { largest: contacts.surface.motion.largest, settling: contacts.settling(clock) };
@@ -141,7 +143,7 @@ pub(super) fn pair<T: Scalar>(
         };
         add(pair, crossing.gap - meeting.thickness);
     }
-    contacts.surface.pairs = pairs;
+    (contacts.surface.pairs, contacts.surface.faced_by_task) = (pairs, found);
 }
 
 /// How deep a point may be inside of another face (m, 0 or negative), of which nothing is kept of how it got there: as

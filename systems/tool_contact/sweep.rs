@@ -1,8 +1,6 @@
 //! Nodes that go farther in a step against a tool than it is thick, for it is fast, or they are drawn hard: where their
 //! way first meets it.
 
-use super::Touch;
-use crate::components::ToolContact;
 use crate::tools::Geometry;
 use glam::DVec3;
 
@@ -14,15 +12,14 @@ const NEAR: f64 = 1e-3;
 
 /// The plane that a tool's surface has where a node first meets it, in the tool's frame: the outward normal, and a
 /// place.
-pub(super) type Plane = (DVec3, DVec3);
+pub(in crate::systems) type Plane = (DVec3, DVec3);
 
-impl Touch {
-    /// How far a place in the tool's frame is outside of what the node must stay outside of (m), and which way out is.
-    pub(super) fn surface(plane: Option<Plane>, tool: &ToolContact, at: DVec3) -> (f64, DVec3) {
-        match plane {
-            Some((normal, place)) => ((at - place).dot(normal), normal),
-            None => tool.geometry.distance(at),
-        }
+/// How far a place in the tool's frame is outside of what a node must stay outside of (m), and which way out is: of a
+/// plane, if its way meets one, else of the tool.
+pub(in crate::systems) fn surface(plane: Option<Plane>, geometry: &Geometry, at: DVec3) -> (f64, DVec3) {
+    match plane {
+        Some((normal, place)) => ((at - place).dot(normal), normal),
+        None => geometry.distance(at),
     }
 }
 
@@ -32,7 +29,7 @@ impl Touch {
 /// By conservative advancement: a distance is never more than the true one, so that much of the way is free. The plane
 /// is that of the nearest place on the surface; a tool that is convex there is all behind it. Of a way that begins
 /// inside it is the side that the node is nearest to where it begins.
-pub(super) fn first_touch(geometry: &Geometry, beyond: f64, [from, to]: [DVec3; 2]) -> Option<Plane> {
+pub(in crate::systems) fn first_touch(geometry: &Geometry, beyond: f64, [from, to]: [DVec3; 2]) -> Option<Plane> {
     let way = from.distance(to);
     if beyond <= 0.0 || way.is_nan() || way <= beyond {
         return None;

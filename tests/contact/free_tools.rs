@@ -2,7 +2,7 @@
 
 use crate::bits::{bits_do_not_depend, start};
 use crate::configurations::{configurations, cpu_and_long_gpu, near};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use sinew::components::{DisplacementIncrement, Precision};
 use sinew::{Error, Simulation};
 
@@ -14,13 +14,13 @@ const HIT: &str =
         free: (density: 1600, velocity: (0.02, 0.01, -0.2), spin: (900, 300, -200)))},
     contacts: [Tool(tool: \"ball\", friction: 0.3)], output: (energies_every: 0.01), integration: (safety: 0.5))";
 
-/// Momentum, and its moment about the origin, of nodes and the ball, in the middle of the last step.
-fn momenta(simulation: &mut Simulation) -> (DVec3, DVec3) {
+/// Momentum, and its moment about the origin, of nodes and a tool, in the middle of the last step.
+fn momenta(simulation: &mut Simulation, tool: &str) -> (DVec3, DVec3) {
     let (masses, at) = (simulation.masses("b").unwrap(), simulation.rest_positions("b").unwrap());
     let (u, rate) = (simulation.displacements("b").unwrap(), 1.0 / simulation.time_step());
     let view = simulation.column::<DisplacementIncrement>("b").unwrap();
     let steps: Vec<DVec3> = view.node_rows().iter().map(|&row| view.values().vector(row as usize)).collect();
-    let free = simulation.tool("ball").unwrap().free.unwrap();
+    let free = simulation.tool(tool).unwrap().free.unwrap();
     let (mut sum, mut moment) = (free.velocity * free.mass, free.angular_momentum);
     moment += free.center.cross(sum);
     for (row, mass) in masses.iter().enumerate() {
@@ -49,7 +49,7 @@ fn a_ball_and_a_cube_that_collide_keep_their_momentum_and_make_no_energy() {
             lost = reading.loss;
             assert!(reading.penetration < 1e-4, "{}: {reading:?}", run.name);
         }
-        let (sum, about) = momenta(&mut simulation);
+        let (sum, about) = momenta(&mut simulation, "ball");
         let (bound, of_moment) = (run.bound(1e-10, 1e-5), run.bound(1e-10, 1e-4));
         near(&format!("{}: momentum", run.name), sum.distance(momentum), 0.0, momentum.length(), bound);
         near(&format!("{}: its moment", run.name), about.distance(moment), 0.0, moment.length(), of_moment);
@@ -241,6 +241,109 @@ fn probes_tell_where_tools_are_and_how_fast() {
         assert_eq!(three(&probes["speed"].1), free.velocity, "the middle of a ball: {}", run.name);
         assert_eq!(three(&probes["speed"].1[3..]), free.spin, "{}", run.name);
         assert!(three(&probes["pose"].1[3..]).length() > 10.0, "{probes:?}");
+    }
+}
+
+/// How thick a plate is that is thrown at a cube, how long and wide (m), and a step (s).
+const PLATE: f64 = 1e-4;
+const WIDE: f64 = 0.03;
+const STEP: f64 = 2e-4;
+
+/// A plate about as heavy as a node of the cube's upper side, turned so (degrees), which goes down by so many of its
+/// thicknesses in a step, from so high above the cube.
+fn thrown(turned: DVec3, plates: f64, height: f64) -> String {
+    let (DVec3 { x, y, z }, speed) = (turned, plates * PLATE / STEP);
+    format!(
+        "(duration: 1, bodies: {{\"b\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (4, 4, 4)), material: \"m\",
+            translate: (-0.01, -0.01, -0.02))}},
+        materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
+        tools: {{\"plate\": (shape: Box(size: ({WIDE}, {WIDE}, {PLATE})), at: (1e-3, 2e-3, {height}), rotation: ({x}, {y}, {z}),
+            free: (density: 800, velocity: ({}, 0, -{speed})))}},
+        contacts: [Tool(tool: \"plate\", friction: 0.2, thin: true)], integration: (step: {STEP}),
+        probes: {{\"pose\": (what: ToolPose(tool: \"plate\"))}}, output: (energies_every: 0.01))",
+        0.1 * speed
+    )
+}
+
+/// Where nodes are in the plate's frame (m).
+fn of_plate(simulation: &mut Simulation) -> Vec<DVec3> {
+    let pose = simulation.probe("pose").unwrap();
+    let turn = DVec3::from_slice(&pose[3..]) * std::f64::consts::PI / 180.0;
+    let back = DQuat::from_scaled_axis(turn).inverse();
+    let (rest, u) = (simulation.rest_positions("b").unwrap(), simulation.displacements("b").unwrap());
+    rest.iter().zip(u).map(|(rest, u)| back * (*rest + u - DVec3::from_slice(&pose))).collect()
+}
+
+/// A plate that goes farther in a step than it is thick, up to .4 of an edge, flat or on an edge of the cube: no node
+/// comes to its other side, momentum is kept, and no energy is made.
+#[test]
+fn a_thin_plate_that_is_thrown_at_tissue_goes_through_no_node() {
+    let flat = [(1.0, 2.3e-4), (1.0, 3.1e-4), (5.0, 1e-3), (20.0, 3.3e-3)].map(|(by, from)| (DVec3::ZERO, by, from));
+    let tilted = [DVec3::new(25.0, 0.0, 0.0), DVec3::new(-10.0, 30.0, 40.0)];
+    let tilted = tilted.into_iter().flat_map(|turned| [1.0, 4.0].map(|by| (turned, by, 1.1e-2)));
+    let cases: Vec<(DVec3, f64, f64)> = flat.into_iter().chain(tilted).collect();
+    let runs = cpu_and_long_gpu();
+    for (run, &(turned, plates, height)) in runs.iter().flat_map(|run| cases.iter().map(move |of| (run, of))) {
+        let mut simulation = run.start(&thrown(turned, plates, height));
+        let what = format!("{}, turned by {turned}, {plates} plates a step", run.name);
+        let free = simulation.tool("plate").unwrap().free.unwrap();
+        let (kinetic, momentum) = (free.kinetic, free.velocity * free.mass);
+        let (mut before, mut touched, mut lost) = (of_plate(&mut simulation), 0, 0.0_f64);
+        // until it has come there, and as long again
+        let steps = 2.0 * (height / (plates * PLATE)).ceil() + 20.0;
+        for step in 0..steps as u32 {
+            simulation.advance(1).unwrap();
+            let now = of_plate(&mut simulation);
+            for (node, (from, to)) in before.iter().zip(&now).enumerate() {
+                let at = from.lerp(*to, from.z / (from.z - to.z));
+                let through = from.z * to.z < 0.0 && at.abs().max_element() < 0.5 * WIDE;
+                assert!(!through, "{what}: node {node} goes from {from} to {to} in step {step}");
+            }
+            let reading = simulation.tool("plate").unwrap();
+            assert!(reading.penetration < run.bound(1e-10, 1e-7), "{what}: {} m", reading.penetration);
+            assert!(reading.loss >= lost - 1e-9 * kinetic, "{what}: {} J after {lost} J", reading.loss);
+            (before, lost, touched) = (now, reading.loss, touched + usize::from(reading.nodes > 0));
+        }
+        let (sum, _) = momenta(&mut simulation, "plate");
+        near(&format!("{what}: momentum"), sum.distance(momentum), 0.0, momentum.length(), run.bound(1e-10, 1e-5));
+        let e = simulation.energies().unwrap();
+        assert!(
+            touched > 0 && lost > 0.1 * kinetic && e.kinetic + e.strain < kinetic,
+            "{what}: {touched} {lost} {e:?}"
+        );
+    }
+}
+
+/// As a guided one (`physics/swept.rs`): a needle far heavier than all that it meets comes down on a row of nodes of a
+/// slab, by up to 2.4 of its radii in a step, and they end on the side that they were on.
+#[test]
+fn a_thin_free_needle_takes_nodes_along_that_it_would_have_jumped_over() {
+    let (radius, step) = (2e-4, 2e-6);
+    for run in cpu_and_long_gpu() {
+        for radii in [0.4, 1.0, 1.9, 2.4] {
+            let mut simulation = run.start(&format!(
+                "(duration: 1, bodies: {{\"b\": (mesh: Box(size: (0.01, 0.01, 0.001), cells: (10, 10, 1), elements: Hex8),
+                    material: \"m\", translate: (-0.005, -0.005, -0.001))}},
+                materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 1e5, poisson: 0.4))}},
+                tools: {{\"needle\": (shape: Capsule(length: 0.02, radius: {radius}), at: (0, -0.01, 3e-4),
+                    rotation: (-90, 0, 0), free: (mass: 1e6, velocity: (0, 0, -{})))}},
+                contacts: [Tool(tool: \"needle\", thin: true)], integration: (step: {step}))",
+                radii * radius / step
+            ));
+            let steps = if radii < 1.0 { 2 } else { 1 };
+            for step in 1..=steps {
+                simulation.advance(1).unwrap();
+                let surface = 3e-4 - f64::from(step) * radii * radius - radius;
+                let (rest, u) = (simulation.rest_positions("b").unwrap(), simulation.displacements("b").unwrap());
+                let row = rest.iter().zip(u).filter(|(x, _)| x.x.abs() < 1e-9 && x.z.abs() < 1e-9);
+                let heights: Vec<f64> = row.map(|(x, u)| x.z + u.z).collect();
+                assert_eq!(heights.len(), 11);
+                for height in heights {
+                    let what = format!("{}, {radii} radii a step, step {step}", run.name);
+                    near(&what, height, surface.min(0.0), 0.01, run.bound(1e-12, 1e-6));
+                }
+            }
+        }
     }
 }
 

@@ -18,6 +18,7 @@ mod faces;
 mod frames;
 mod free_tools;
 mod glue;
+mod glued_grasps;
 mod grasp;
 mod grasped_surfaces;
 mod implicit;
