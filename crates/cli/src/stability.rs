@@ -76,7 +76,8 @@ fn taken_from(summary: &Summary) -> Option<String> {
 /// The step of a run, and how it went.
 pub fn of_run(summary: &Summary) -> Vec<String> {
     let first = quantity(summary.stability.step, "s");
-    let mut lines = vec![format!("{first}; stable up to {}", bounds(summary))];
+    let sure = if summary.stability.limit.is_some() { "certainly stable" } else { "stable" };
+    let mut lines = vec![format!("{first}; {sure} up to {}", bounds(summary))];
     lines.extend(taken_from(summary));
     let Some(history) = &summary.step_history else { return lines };
     if history.changes > 0 {
