@@ -2,11 +2,14 @@
 
 mod contacts;
 
+use super::grasp::Grip;
+use super::node_slices::{NodeSlices, SlicedColumns, vector};
 use super::repeat::Repeat;
 use super::system::{Phase, System};
 use crate::backend::cpu::{Foreseen, IntegrationCoefficients};
 use crate::components::*;
 use crate::error::{Criterion, Error, Instability};
+use crate::math::Scalar;
 use crate::observation::Observer;
 use crate::tools::RigidMotion;
 use bevy_ecs::prelude::*;
@@ -46,15 +49,9 @@ const MOST_TURN: f64 = 0.5;
 #[derive(QueryData)]
 #[query_data(mutable)]
 struct TouchedColumns {
-    rest: &'static RestPosition,
-    mass: &'static Mass,
-    inertial: Option<&'static InertialMass>,
-    damping: Option<&'static DampingCoefficient>,
-    axes: &'static ConstrainedAxes,
-    internal: &'static InternalForce,
-    external: &'static mut ExternalForce,
-    u: &'static Displacement,
-    step: &'static DisplacementIncrement,
+    nodes: SlicedColumns,
+    /// Where tools may hold its nodes.
+    grip: Option<(&'static Grasps, &'static ToolHold)>,
 }
 
 /// A tool in a step.
@@ -113,7 +110,7 @@ fn free_tool(
     }
     for (tool, state) in tools.all.iter().zip(&mut motions.all) {
         let step = ToolStep::new(tool, state.motion, &clock, &signals);
-        let near = step.near(tools.reference, &bodies, &state.touches);
+        let near = step.near((tools.reference, &signals), &mut bodies, &state.touches);
         let fault = step.fault(&near);
         let Solved { velocity, momentum, touches } = contacts::solve(&step, near);
         let next = RigidMotion { velocity, momentum, ..step.before };
@@ -124,8 +121,8 @@ fn free_tool(
         for (touch, _) in &touches {
             if let Ok(mut columns) = bodies.get_mut(tool.meets[touch.node.0 as usize].body) {
                 let row = touch.node.1 as usize;
-                let load = columns.external.vector(row) + touch.force;
-                columns.external.set_vector(row, load);
+                let load = columns.nodes.external.vector(row) + touch.force;
+                columns.nodes.external.set_vector(row, load);
             }
         }
         state.touches = touches.into_iter().map(|(touch, _)| touch).collect();
@@ -135,34 +132,59 @@ fn free_tool(
 }
 
 impl ToolStep<'_> {
-    /// Nodes that may touch the tool in this step.
-    fn near(&self, reference: DVec3, bodies: &Query<TouchedColumns>, touched: &[FreeTouch]) -> Vec<Near> {
-        let (tool, time_step) = (self.tool, self.response.time_step);
-        let Some((center, radius)) = tool.geometry.bounding_sphere() else { return Vec::new() };
-        let center = tool.pose(&self.free.after(time_step, &tool.inertia)).place(center);
+    /// Nodes that may touch the tool in this step, in the order of bodies and rows.
+    fn near(
+        &self,
+        (reference, signals): (DVec3, &Signals),
+        bodies: &mut Query<TouchedColumns>,
+        touched: &[FreeTouch],
+    ) -> Vec<Near> {
         let mut all = Vec::new();
-        for (number, met) in tool.meets.iter().enumerate() {
-            let Ok(columns) = bodies.get(met.body) else { continue };
-            let reach = (radius + met.edge) * (radius + met.edge);
-            for &row in &met.rows {
-                let (at, node) = (row as usize, (number as u32, row));
-                let place = columns.rest.0[at] - reference + columns.u.vector(at);
-                let inertia = columns.inertial.map_or_else(|| columns.mass.get(at), |mass| mass.get(at));
-                if center.distance_squared(place) > reach || inertia <= 0.0 {
-                    continue;
-                }
-                let damping = columns.damping.map_or(0.0, |damping| damping.get(at));
-                let force = columns.external.vector(at) - columns.internal.vector(at);
-                let before = columns.step.vector(at);
-                let foreseen = self.coefficients.foresee(inertia, damping, columns.axes[at], before, force);
-                // what touched is in the order of nodes
-                let stuck = touched.binary_search_by_key(&node, |touch| touch.node).is_ok_and(|i| touched[i].sticks);
-                let friction = met.friction[usize::from(!stuck)];
-                let (arm, out) = (place - self.before.place, met.settling * time_step);
-                all.push(Near { node, place, foreseen, arm, friction, edge: met.edge, swept: met.swept, out });
+        for number in 0..self.tool.meets.len() {
+            let Ok(columns) = bodies.get_mut(self.tool.meets[number].body) else { continue };
+            let of = (number, touched);
+            match columns.nodes.u.precision() {
+                Precision::F32 => self.near_of::<f32>((reference, signals), columns, of, &mut all),
+                Precision::F64 => self.near_of::<f64>((reference, signals), columns, of, &mut all),
             }
         }
         all
+    }
+
+    /// Those of the body at a place in [`FreeTool::meets`]: of those that closed tools hold, as these take them.
+    fn near_of<T: Scalar>(
+        &self,
+        (reference, signals): (DVec3, &Signals),
+        TouchedColumnsItem { nodes, grip }: TouchedColumnsItem<'_, '_>,
+        (number, touched): (usize, &[FreeTouch]),
+        all: &mut Vec<Near>,
+    ) {
+        let (tool, time_step) = (self.tool, self.response.time_step);
+        let Some((center, radius)) = tool.geometry.bounding_sphere() else { return };
+        let center = tool.pose(&self.free.after(time_step, &tool.inertia)).place(center);
+        let (met, first) = (&tool.meets[number], all.len());
+        let reach = (radius + met.edge) * (radius + met.edge);
+        let nodes = NodeSlices::<T>::of(nodes);
+        for &row in &met.rows {
+            let (at, node) = (row as usize, (number as u32, row));
+            let place = nodes.rest[at] - reference + vector(nodes.u, at);
+            if center.distance_squared(place) > reach || nodes.mass[at].to_f64() <= 0.0 {
+                continue;
+            }
+            let foreseen = nodes.foresee(at, &self.coefficients);
+            // what touched is in the order of nodes
+            let stuck = touched.binary_search_by_key(&node, |touch| touch.node).is_ok_and(|i| touched[i].sticks);
+            let friction = met.friction[usize::from(!stuck)];
+            let (arm, out) = (place - self.before.place, met.settling * time_step);
+            all.push(Near { node, place, foreseen, arm, friction, edge: met.edge, swept: met.swept, out });
+        }
+        let Some(grip) = grip.map(Grip::<T>::of) else { return };
+        let near = &mut all[first..];
+        let rows: Vec<u32> = near.iter().map(|near| near.node.1).collect();
+        let place_of = |row: u32| rows.binary_search(&row).ok();
+        grip.each_held(&nodes, (&self.coefficients, signals), place_of, |place, step| {
+            near[place].foreseen = Foreseen { step, free: DVec3::ZERO, ..near[place].foreseen };
+        });
     }
 
     /// Counts what was done to the tool. With velocities of the middles before and after, forces do the work F · ½ (v +
@@ -177,7 +199,8 @@ impl ToolStep<'_> {
         for (touch, node) in touches {
             on_tool -= window * touch.force.dot(velocity + spin.cross(touch.arm));
             let end = node.step + node.free * touch.force / node.to_force;
-            on_nodes += coefficients.work_factor * (touch.force * node.free).dot(0.5 * (node.before + end));
+            // on those that are moved as told, too: who moves them does as much less
+            on_nodes += coefficients.work_factor * touch.force.dot(0.5 * (node.before + end));
         }
         state.gravity_work += by_gravity;
         state.contact_work += on_tool;

@@ -25,6 +25,7 @@ mod implicit;
 mod implicit_ties;
 mod ironing;
 mod kinematic_rest;
+mod lifted_tools;
 mod lost_surfaces;
 mod memory;
 mod rest;
