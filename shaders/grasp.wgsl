@@ -23,29 +23,33 @@ fn from_frame(at: u32, y: vec3<f32>) -> vec3<f32> {
 }
 
 fn grasp(i: u32, node: u32) {
-    for (var number = 0u; number < GRASPS; number++) {
-        if ((holdable[i].w >> number) & 1u) == 1u {
-            hold(i, node, number);
+    // of several tools the last one has it
+    var ends = vec4<f32>(0.0);
+    for (var left = GRASPS; left > 0u; left--) {
+        if ((holdable[i].w >> (left - 1u)) & 1u) == 1u {
+            ends = hold(i, node, left - 1u, ends);
         }
     }
 }
 
-fn hold(i: u32, node: u32, number: u32) {
+// What one tool does to one node, which others may take to a place already (the fourth number is 1): whom these let go
+// it takes up where it is then. Gives where the node ends, if a tool holds it.
+fn hold(i: u32, node: u32, number: u32, ends: vec4<f32>) -> vec4<f32> {
     let own = NUMBERS * (GRASPS * i + number);
     let is_closed = step.signals[grips[number].closed].y > 0.0;
     let open = tool_hold[own + 3u] == 0.0;
     if open && !is_closed {
-        return;
+        return ends;
     }
     for (var k = 0u; k < 3u; k++) {
         tool_hold[own + k] = 0.0;
     }
     if !is_closed {
         tool_hold[own + 3u] = 0.0;
-        return;
+        return ends;
     }
     if mass[node] <= 0.0 {
-        return;
+        return ends;
     }
     let at = tools[number].signal;
     let place = bitcast<vec3<f32>>(holdable[i].xyz) + displacement_of(node);
@@ -60,7 +64,14 @@ fn hold(i: u32, node: u32, number: u32) {
         tool_hold[own + 8u] = y.z;
     }
     if tool_hold[own + 3u] != HELD {
-        return;
+        return ends;
+    }
+    if ends.w == 1.0 {
+        let y = into_frame(array<vec4<f32>, 3>(step.signals[at], step.signals[at + 1u], step.signals[at + 2u]), ends.xyz);
+        tool_hold[own + 6u] = y.x;
+        tool_hold[own + 7u] = y.y;
+        tool_hold[own + 8u] = y.z;
+        return ends;
     }
     let of_tool = vec3<f32>(tool_hold[own + 6u], tool_hold[own + 7u], tool_hold[own + 8u]);
     let of_node = foresee(node);
@@ -85,4 +96,5 @@ fn hold(i: u32, node: u32, number: u32) {
         tool_hold[own + 5u] += work - step.work_factor * dot(force, 0.5 * (of_node.before + of_node.predicted + gap));
     }
     add_load(node, force);
+    return vec4<f32>(place + of_node.predicted + gap, 1.0);
 }

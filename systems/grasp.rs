@@ -104,9 +104,11 @@ impl NodeSystem for Grasps {
         let count = self.numbers_a_grasp();
         for (place, (&row, &mask)) in self.rows[own.clone()].iter().zip(&self.masks[own]).enumerate() {
             let values = &mut holds.values[holds.numbers * place..holds.numbers * (place + 1)];
-            for (number, values) in values.chunks_exact_mut(count).enumerate() {
+            // of several tools the last one has it
+            let mut ends = None;
+            for (number, values) in values.chunks_exact_mut(count).enumerate().rev() {
                 if mask >> number & 1 == 1 {
-                    self.hold(step, number, row as usize - nodes.first, nodes, values);
+                    ends = self.hold(step, number, (row as usize - nodes.first, ends), nodes, values);
                 }
             }
         }
@@ -115,27 +117,28 @@ impl NodeSystem for Grasps {
 }
 
 impl Grasps {
-    /// What one tool does to one node.
+    /// What one tool does to one node, which others may take to a place already (m): whom these let go it takes up where
+    /// it is then. Gives where the node ends, if a tool holds it.
     fn hold<T: SimdScalar>(
         &self,
         step: &GraspStep,
         number: usize,
-        row: usize,
+        (row, ends): (usize, Option<DVec3>),
         nodes: &mut NodeColumns<'_, T>,
         values: &mut [T],
-    ) {
+    ) -> Option<DVec3> {
         let (grasp, ToolInStep { closed, pose, change }) = (&self.grasps[number], &step.tools[number]);
         let open = values[3] == T::default();
         if open && !closed {
-            return;
+            return ends;
         }
         values[..3].fill(T::default());
         if !closed {
             values[3] = T::default();
-            return;
+            return ends;
         }
         if nodes.inertia()[row] <= T::default() {
-            return;
+            return ends;
         }
         let place = nodes.rest[row] - self.reference + nodes.displacement(row);
         if open {
@@ -147,7 +150,13 @@ impl Grasps {
             }
         }
         if values[3] != T::from_f64(HELD) {
-            return;
+            return ends;
+        }
+        if let Some(ends) = ends {
+            for (number, part) in values[6..9].iter_mut().zip(pose.inverse(ends).to_array()) {
+                *number = T::from_f64(part);
+            }
+            return Some(ends);
         }
         let of_tool = DVec3::from_array([6, 7, 8].map(|i: usize| values[i].to_f64()));
         let foreseen = nodes.foresee(&step.coefficients, row);
@@ -170,6 +179,7 @@ impl Grasps {
             values[5] += T::from_f64(work - on_node);
         }
         nodes.add_load(row, force);
+        Some(place + foreseen.step + gap)
     }
 }
 

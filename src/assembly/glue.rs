@@ -42,11 +42,34 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
     if gluing.glue.ties.is_empty() {
         return;
     }
+    between_led_nodes(&gluing.glue, world, diagnostics);
     for (body, count) in gluing.counts {
         let state = TieState(Reals::zeros(assembly.precision, TIE_NUMBERS * count));
         world.entity_mut(gluing.glue.bodies[body]).insert(state);
     }
     world.insert_resource(gluing.glue);
+}
+
+/// Tells of ties between nodes that are fixed or moved as told on both sides: no force could move them.
+fn between_led_nodes(glue: &Glue, world: &World, diagnostics: &mut Diagnostics) {
+    let is_led = |body: usize, row: u32| {
+        world.get::<ConstrainedAxes>(glue.bodies[body]).is_some_and(|axes| axes[row as usize] == 0b111)
+    };
+    let mut counts: BTreeMap<usize, [usize; 2]> = BTreeMap::new();
+    for tie in &glue.ties {
+        let of_point = tie.nodes.iter().all(|&(row, _)| is_led(tie.bodies[0], row));
+        let of_face =
+            tie.corners.iter().zip(tie.weights).all(|(&row, weight)| weight == 0.0 || is_led(tie.bodies[1], row));
+        let [led, all] = counts.entry(tie.number).or_default();
+        (*led, *all) = (*led + usize::from(of_point && of_face), *all + 1);
+    }
+    for (number, [led, all]) in counts.into_iter().filter(|(_, [led, _])| *led > 0) {
+        let message =
+            format!("{led} of its {all} points are between nodes that are fixed or moved as told on both sides");
+        diagnostics
+            .warn_at(format!("attachments[{number}]").as_str(), message)
+            .note("no force moves those: there it bears nothing, and never breaks");
+    }
 }
 
 impl Gluing<'_> {

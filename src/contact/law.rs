@@ -298,7 +298,11 @@ impl ContactSet {
             let rubs = contact.rubbing != DVec3::ZERO;
             let slipped = if rubs { start.slip.length_squared() / (2.0 * contact.yields_along) } else { 0.0 };
             beyond += given - inside + taken - slipped;
-            size += given.abs() + inside + taken + slipped;
+            // a step against the face is the difference of those of nodes, which may be far larger
+            let of_nodes: f64 =
+                contact.parts.iter().map(|(node, weight)| weight.abs() * self.steps[node].length()).sum();
+            let by_rounding = (contact.force().length() + along.abs() / contact.yields) * of_nodes;
+            size += given.abs() + inside + taken + slipped + by_rounding;
         }
         // what is no number is told of
         if beyond <= ROUNDING * size { 0.0 } else { beyond }

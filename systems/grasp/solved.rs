@@ -4,6 +4,7 @@ use super::{HELD, WITHOUT};
 use crate::components::*;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+use smallvec::SmallVec;
 
 /// A node that a closed tool holds in a step.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +35,7 @@ pub(crate) fn held_in_step(world: &mut World) -> Vec<HeldNode> {
         for (place, (&row, &mask)) in grasps.rows.iter().zip(&grasps.masks).enumerate() {
             let row = row as usize;
             let at_rest = rest.0[row] - grasps.reference;
-            let mut last = None;
+            let (mut last, mut held) = (None::<HeldNode>, SmallVec::<[(usize, Pose); 4]>::new());
             for (number, grasp) in grasps.grasps.iter().enumerate().filter(|(number, _)| mask >> number & 1 == 1) {
                 let at = grasps.numbers() * place + grasps.numbers_a_grasp() * number;
                 let [pose, change] = [0, 3].map(|slot| Pose::of_slots(&values[grasp.tool.signal + slot..]));
@@ -47,6 +48,13 @@ pub(crate) fn held_in_step(world: &mut World) -> Vec<HeldNode> {
                 let tool_step = change.place(of_tool);
                 let (strength, felt) = (grasp.strength, grasps.felt);
                 last = Some(HeldNode { body, row, displacement, tool_step, at, strength, felt });
+                held.push((at, pose));
+            }
+            // whom the last one lets go the others take up where it is then
+            held.pop();
+            for (at, pose) in held {
+                let ends = last.map_or(at_rest, |last| at_rest + last.displacement);
+                hold.set_vector_at(at + 6, pose.inverse(ends));
             }
             all.extend(last);
         }

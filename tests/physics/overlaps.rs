@@ -115,3 +115,22 @@ fn a_tool_that_goes_into_a_body_between_its_nodes_is_warned_of_when_it_is_there(
         }
     }
 }
+
+/// A plane that goes 5 mm into a face that is fixed pushes nobody there; into one that is free it does.
+#[test]
+fn a_tool_in_fixed_nodes_is_warned_of() {
+    let rest = |held: &str| {
+        format!(
+            "tools: {{\"plane\": (shape: Plane(), at: (0, 0, 0.101), rotation: (180, 0, 0),
+                moves: [(displacement: (0, 0, -0.006), curve: Ramp(end: 0.1))])}},
+            contacts: [Tool(tool: \"plane\")], constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: {held}))]"
+        )
+    };
+    for run in &configurations() {
+        assert_eq!(warned(&run.options, "Hex8", &[(4, 0.1, [0.0; 3])], &rest("0")), []);
+        let told = warned(&run.options, "Hex8", &[(4, 0.1, [0.0; 3])], &rest("0.1"));
+        assert_eq!(told.len(), 1, "{}: {told:?}", run.name);
+        let said = "the tool plane is in 25 nodes of b0 that are fixed or moved as told, the deepest by ";
+        assert!(told[0].message.contains(said) && told[0].part == "plane and held nodes of b0", "{told:?}");
+    }
+}

@@ -58,6 +58,7 @@ fn what_is_wrong_with_a_grasp_is_told_where_it_stands() {
             "5: warning: as `b` is at the start, nothing of it is in the jaws of `forceps` when they close | at 5.000e-2 s",
         ),
         (&many, "5: error: at most 8 grasps may hold a body"),
+        (&many, "5: error: this tool holds the same nodes by attachments[0] already"),
     ]);
 }
 

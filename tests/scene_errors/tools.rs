@@ -338,3 +338,19 @@ fn what_can_do_nothing_is_told() {
     assert!(said.contains("warning: `rod` has no weight: gravity acts on bodies that are named"), "{said}");
     assert_eq!(told(free, TOUCH, &named.replace("body: \"b\", ", "")), "");
 }
+
+#[test]
+fn what_sucks_or_takes_twice_is_told() {
+    let entry = "(tool: \"rod\", pressure: 100, bore: 0.01, reach: 0.02)";
+    let said = told(ROD, TOUCH, &format!("suction: [{entry}, {entry}],"));
+    assert!(said.contains("error: `rod` sucks at this body by suction[0] already | leave one of both out"), "{said}");
+    let entry = "(when: InTool(tool: \"rod\", reach: 0.02, rate: 1e-6))";
+    let said = told(ROD, TOUCH, &format!("removal: [{entry}, {entry}],"));
+    assert!(
+        said.contains("error: `rod` takes the same elements by two entries: they would go twice as fast"),
+        "{said}"
+    );
+    let other =
+        "(on: Box(min: (0, 0, 0), max: (0.05, 0.1, 0.1)), when: InTool(tool: \"rod\", reach: 0.02, rate: 1e-6))";
+    assert_eq!(told(ROD, TOUCH, &format!("removal: [{entry}, {other}],")), "");
+}

@@ -263,7 +263,8 @@ fn tools(summary: &Summary, page: &mut Page) {
         };
         let (work, loss) = (quantity(reading.work, "J"), taken(reading.loss));
         let nodes = counted(reading.nodes as u64, "node");
-        format!("{name} feels ({x}, {y}, {z}) of {nodes}{inside}{sucks}; it did {work}, {loss}")
+        let but = if reading.suction.length() > 0.0 { ", the work of what it sucks left out" } else { "" };
+        format!("{name} feels ({x}, {y}, {z}) of {nodes}{inside}{sucks}; it did {work}{but}, {loss}")
     });
     page.rows("tools", lines.collect::<Vec<_>>());
 }

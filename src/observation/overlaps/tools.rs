@@ -11,6 +11,12 @@ use glam::DVec3;
 /// How deep in a body a tool's surface must be, in edges of faces: between nodes it dips into faces.
 const DEPTH: f64 = 0.5;
 
+/// How deep nodes are in a tool, in edges, that are more than at its surface.
+const PRESSED: f64 = 0.01;
+
+/// Bits of a node that has no free axis.
+const ALL_AXES: u32 = 0b111;
+
 /// A tool and a body that it may touch.
 pub(super) struct Pair {
     tool: String,
@@ -18,6 +24,8 @@ pub(super) struct Pair {
     /// In the scene (m).
     pose: Pose,
     body: Entity,
+    /// Of a guided tool its place in [`ToolContacts::tools`].
+    bit: Option<usize>,
     /// The body's name.
     label: String,
     /// Of the body's faces (m).
@@ -27,6 +35,11 @@ pub(super) struct Pair {
 /// Warns once of each tool in a body.
 pub(super) fn check(world: &World, pairs: &[Pair], memory: &mut GuardMemory, (time, step): (f64, u64)) {
     for pair in pairs {
+        if let Some(notice) = unfelt(world, pair, (time, step))
+            && !memory.warnings.iter().any(|other| other.criterion == OVERLAP && other.part == notice.part)
+        {
+            memory.warnings.push(notice);
+        }
         let part = format!("{} and {}", pair.tool, pair.label);
         let is_told = memory.warnings.iter().any(|notice| notice.criterion == OVERLAP && notice.part == part);
         let Some((middle, radius)) = pair.geometry.bounding_sphere() else { continue };
@@ -44,6 +57,30 @@ pub(super) fn check(world: &World, pairs: &[Pair], memory: &mut GuardMemory, (ti
             memory.warnings.push(Notice { criterion, part, time, step, value: 1.0, limit: 0.0, message });
         }
     }
+}
+
+/// What to say of nodes inside a guided tool that are fixed or moved as told: it pushes nobody there, and feels nothing.
+fn unfelt(world: &World, pair: &Pair, (time, step): (f64, u64)) -> Option<Notice> {
+    let bit = pair.bit?;
+    let (contacts, axes) = (world.get::<ToolContacts>(pair.body)?, world.get::<ConstrainedAxes>(pair.body)?);
+    let (rest, u) = (world.get::<RestPosition>(pair.body)?, world.get::<Displacement>(pair.body)?);
+    let (mut count, mut deepest) = (0, 0.0_f64);
+    for (&row, &mask) in contacts.rows.iter().zip(&contacts.masks) {
+        let at = row as usize;
+        if mask >> bit & 1 == 1 && axes[at] == ALL_AXES {
+            let depth = -pair.geometry.distance(pair.pose.inverse(rest.0[at] + u.vector(at))).0;
+            (count, deepest) = (count + usize::from(depth > PRESSED * pair.edge), deepest.max(depth));
+        }
+    }
+    let (tool, label) = (&pair.tool, &pair.label);
+    let message = format!(
+        "the tool {tool} is in {} of {label} that are fixed or moved as told, the deepest by {deepest:.3e} m: it feels \
+         nothing of them; hold nodes that it does not reach",
+        if count == 1 { "a node".to_string() } else { format!("{count} nodes") }
+    );
+    let part = format!("{tool} and held nodes of {label}");
+    let criterion = OVERLAP.to_string();
+    (count > 0).then_some(Notice { criterion, part, time, step, value: 1.0, limit: 0.0, message })
 }
 
 fn message(Pair { tool, edge, .. }: &Pair, body: &Placed<'_>, (at, element): (DVec3, usize)) -> String {
@@ -64,11 +101,11 @@ pub(super) fn pairs(world: &mut World) -> Vec<Pair> {
     let now = poses_now(world);
     let mut bodies = world.query::<(Entity, &Label, &ToolContacts)>();
     for (body, label, contacts) in bodies.iter(world) {
-        for contact in &contacts.tools {
+        for (bit, contact) in contacts.tools.iter().enumerate() {
             let Some((_, pose)) = now.iter().find(|(slot, _)| *slot == contact.signal) else { continue };
             let pose = Pose { at: pose.at + contacts.reference, ..*pose };
             let (tool, geometry) = (contact.tool.clone(), contact.geometry.clone());
-            all.push(Pair { tool, geometry, pose, body, label: label.0.clone(), edge: contacts.edge });
+            all.push(Pair { tool, geometry, pose, body, bit: Some(bit), label: label.0.clone(), edge: contacts.edge });
         }
     }
     if let (Some(tools), Some(motions)) = (world.get_resource::<FreeTools>(), world.get_resource::<FreeMotions>()) {
@@ -77,7 +114,7 @@ pub(super) fn pairs(world: &mut World) -> Vec<Pair> {
             let pose = Pose { at: pose.at + tools.reference, ..pose };
             let pair = |met: &MetBody| {
                 let (tool, geometry) = (tool.name.clone(), tool.geometry.clone());
-                Pair { tool, geometry, pose, body: met.body, label: met.name.clone(), edge: met.edge }
+                Pair { tool, geometry, pose, body: met.body, bit: None, label: met.name.clone(), edge: met.edge }
             };
             all.extend(tool.meets.iter().map(pair));
         }

@@ -26,6 +26,12 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
         match attachment {
             Attachment::Grasp { body, .. } => {
                 grasp(scene_, validator, &path, attachment);
+                if let Some(earlier) =
+                    scene_.attachments[..number].iter().position(|other| is_same_grasp(other, attachment))
+                {
+                    let message = format!("this tool holds the same nodes by attachments[{earlier}] already");
+                    validator.out.error_at(&path, message).note("leave one of both out");
+                }
                 let count = of_body.entry(body.as_ref().or(scene_.bodies.keys().next())).or_default();
                 *count += 1;
                 if *count == TOOLS_OF_A_BODY + 1 {
@@ -82,6 +88,16 @@ fn static_strength(scene_: &Scene, validator: &mut Validator, path: &Path, field
             .out
             .warn_at(path.name(field), "nothing breaks in a static analysis: it holds whatever it bears")
             .note("what breaks depends on the way there, which a transient analysis goes");
+    }
+}
+
+/// Whether two grasps are of one tool and the same nodes.
+fn is_same_grasp(one: &Attachment, other: &Attachment) -> bool {
+    match (one, other) {
+        (Attachment::Grasp { tool, body, on, .. }, Attachment::Grasp { tool: of, body: with, on: by, .. }) => {
+            (tool, body, on) == (of, with, by)
+        }
+        _ => false,
     }
 }
 

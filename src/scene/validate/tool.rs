@@ -5,7 +5,7 @@ use super::names::body_named;
 use super::{Validator, scene, select, show};
 use crate::scene::limits::{MOST_BURST, MOST_SWEEPS, TOOLS_OF_A_BODY};
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{Contact, ContactLaw, Follow, Port, Removal, Scene, Shape, Threshold, Tool, When};
+use crate::scene::schema::{Contact, ContactLaw, Follow, Port, Removal, Scene, Shape, Suction, Threshold, Tool, When};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use crate::tools::closest_approach;
@@ -234,6 +234,12 @@ pub(super) fn takes(scene_: &Scene, validator: &mut Validator, path: &Path, remo
     named(scene_, validator, path, tool);
     validator.above_zero(&path.name("reach"), *reach, "m");
     taken_by(validator, path, tool, (*rate, *threshold));
+    let is_this =
+        |other: &&Removal| other.when.tool() == Some(tool) && (&other.body, &other.on) == (&removal.body, &removal.on);
+    if scene_.removal.iter().filter(is_this).count() > 1 {
+        let message = format!("`{tool}` takes the same elements by two entries: they would go twice as fast");
+        validator.out.error_at(path, message).note("leave one of both out, or give one of them more");
+    }
     if let Some(crumb) = crumb {
         validator.not_negative(&path.name("crumb"), *crumb, "m³");
     }
@@ -295,6 +301,12 @@ fn suction(scene_: &Scene, validator: &mut Validator) {
         validator.above_zero(&path.name("pressure"), suction.pressure, "Pa");
         validator.above_zero(&path.name("reach"), suction.reach, "m");
         validator.not_negative(&path.name("delay"), suction.delay, "s");
+        let body = |name: &Option<String>| name.as_ref().or(scene_.bodies.keys().next()).cloned();
+        let is_this = |other: &Suction| other.tool == suction.tool && body(&other.body) == body(&suction.body);
+        if let Some(earlier) = scene_.suction[..number].iter().position(is_this) {
+            let message = format!("`{}` sucks at this body by suction[{earlier}] already", suction.tool);
+            validator.out.error_at(&path, message).note("leave one of both out");
+        }
         let tool = scene_.tools.get(&suction.tool);
         if let Some(bore) = suction.bore {
             validator.above_zero(&path.name("bore"), bore, "m");
