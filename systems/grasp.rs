@@ -117,8 +117,8 @@ impl NodeSystem for Grasps {
 }
 
 impl Grasps {
-    /// What one tool does to one node, which others may take to a place already (m): whom these let go it takes up where
-    /// it is then. Gives where the node ends, if a tool holds it.
+    /// What one tool does to one node, which others may take to a place already (m): whom these let go it takes up
+    /// where it is then. Gives where the node ends, if a tool holds it.
     fn hold<T: SimdScalar>(
         &self,
         step: &GraspStep,

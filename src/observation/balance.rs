@@ -71,14 +71,15 @@ pub(super) fn balance(
 struct Held {
     /// By elements, and of viscous ones what remains in the long term.
     lasting: f64,
-    /// By elements and by motion.
+    /// By elements and by motion, that of free tools too.
     all: f64,
     /// Whether a part is viscous.
     viscous: bool,
 }
 
 fn held_by(seen: &Sample, world: &World) -> Held {
-    let mut held = Held { lasting: 0.0, all: seen.kinetic, viscous: false };
+    let all = seen.kinetic + super::free_tools::kinetic(world);
+    let mut held = Held { lasting: 0.0, all, viscous: false };
     for (entity, sums) in &seen.parts {
         let share = |terms: &[(f64, f64)]| terms.iter().map(|(alpha, _)| alpha).sum::<f64>();
         let relaxed = |prony: &Prony| share(&prony.terms).max(share(&prony.volumetric));

@@ -98,14 +98,19 @@ pub(super) fn losses(world: &World) -> Vec<f64> {
     motions.map_or(Vec::new(), |motions| motions.all.iter().map(|state| state.contact_loss).collect())
 }
 
+/// Kinetic energy of all (J).
+pub(super) fn kinetic(world: &World) -> f64 {
+    let (Some(tools), Some(motions)) = (world.get_resource::<FreeTools>(), world.get_resource::<FreeMotions>()) else {
+        return 0.0;
+    };
+    tools.all.iter().zip(&motions.all).map(|(tool, state)| state.motion.kinetic(&tool.inertia)).sum()
+}
+
 /// Adds to the energies of bodies those of free tools: work done on them counts with that of loads, where it is
 /// counted.
 pub(super) fn add_energies(world: &World, sum: &mut Energies) {
-    let (Some(tools), Some(motions)) = (world.get_resource::<FreeTools>(), world.get_resource::<FreeMotions>()) else {
-        return;
-    };
-    for (tool, state) in tools.all.iter().zip(&motions.all) {
-        sum.kinetic += state.motion.kinetic(&tool.inertia);
+    sum.kinetic += kinetic(world);
+    for state in world.get_resource::<FreeMotions>().iter().flat_map(|motions| &motions.all) {
         if let Some(work) = &mut sum.load_work {
             *work += state.gravity_work + state.contact_work;
         }

@@ -53,7 +53,7 @@ pub(super) fn check(world: &mut World) -> Result<(), Error> {
     {
         return Ok(());
     }
-    bring_to_host(world, |_, name| name == Displacement::NAME || name == Alive::NAME)?;
+    bring_to_host(world, |_, name| [Displacement::NAME, Alive::NAME, ToolHold::NAME].contains(&name))?;
     let (time, step) = (world.resource::<Clock>().time(), world.resource::<Clock>().step);
     let mut memory = world.get_resource::<GuardMemory>().cloned().unwrap_or_default();
     let mut placed: Vec<Placed<'_>> = bodies.iter().filter_map(|&body| place(world, body)).collect();

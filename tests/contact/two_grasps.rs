@@ -5,8 +5,8 @@ use crate::configurations::{configurations, near};
 use sinew::Simulation;
 use sinew::components::Precision;
 
-/// A block of 1 cm³, its upper nodes in two forceps: one that stands still, and one that lifts them by 1 mm and opens at
-/// .25 s.
+/// A block of 1 cm³, its upper nodes in two forceps: one that stands still, and one that lifts them by 1 mm and opens
+/// at .25 s.
 fn scene(more: &str) -> String {
     let grasp = |tool: &str, closed: &str| {
         format!("Grasp(tool: \"{tool}\", on: Plane(normal: (0, 0, 1), at: 0.01), closed: {closed})")

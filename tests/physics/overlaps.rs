@@ -131,6 +131,26 @@ fn a_tool_in_fixed_nodes_is_warned_of() {
         let told = warned(&run.options, "Hex8", &[(4, 0.1, [0.0; 3])], &rest("0.1"));
         assert_eq!(told.len(), 1, "{}: {told:?}", run.name);
         let said = "the tool plane is in 25 nodes of b0 that are fixed or moved as told, the deepest by ";
-        assert!(told[0].message.contains(said) && told[0].part == "plane and held nodes of b0", "{told:?}");
+        assert!(told[0].message.contains(said) && told[0].part == "plane and led nodes of b0", "{told:?}");
+    }
+}
+
+/// Forceps press nodes 1 mm into a table that they touch: both want them.
+#[test]
+fn a_tool_in_nodes_that_another_holds_is_warned_of() {
+    let rest = |way: f64| {
+        format!(
+            "tools: {{\"table\": (shape: Plane()), \"forceps\": (shape: Sphere(radius: 0.01), at: (0.05, 0.05, 0),
+                moves: [(displacement: (0, 0, {way:?}), curve: Smooth(end: 0.05))])}},
+            attachments: [Grasp(tool: \"forceps\", on: Plane(normal: (0, 0, 1), at: 0), closed: Step())],
+            contacts: [Tool(tool: \"table\")]"
+        )
+    };
+    for run in &configurations() {
+        assert_eq!(warned(&run.options, "Hex8", &[(4, 0.1, [0.0; 3])], &rest(1e-3)), []);
+        let told = warned(&run.options, "Hex8", &[(4, 0.1, [0.0; 3])], &rest(-1e-3));
+        assert_eq!(told.len(), 1, "{}: {told:?}", run.name);
+        let said = "the tool table is in 25 nodes of b0 that another closed tool holds, the deepest by ";
+        assert!(told[0].message.contains(said) && told[0].part == "table and held nodes of b0", "{told:?}");
     }
 }

@@ -35,10 +35,10 @@ pub(super) struct Pair {
 /// Warns once of each tool in a body.
 pub(super) fn check(world: &World, pairs: &[Pair], memory: &mut GuardMemory, (time, step): (f64, u64)) {
     for pair in pairs {
-        if let Some(notice) = unfelt(world, pair, (time, step))
-            && !memory.warnings.iter().any(|other| other.criterion == OVERLAP && other.part == notice.part)
-        {
-            memory.warnings.push(notice);
+        for notice in unfelt(world, pair, (time, step)).into_iter().flatten() {
+            if !memory.warnings.iter().any(|other| other.criterion == OVERLAP && other.part == notice.part) {
+                memory.warnings.push(notice);
+            }
         }
         let part = format!("{} and {}", pair.tool, pair.label);
         let is_told = memory.warnings.iter().any(|notice| notice.criterion == OVERLAP && notice.part == part);
@@ -59,28 +59,58 @@ pub(super) fn check(world: &World, pairs: &[Pair], memory: &mut GuardMemory, (ti
     }
 }
 
-/// What to say of nodes inside a guided tool that are fixed or moved as told: it pushes nobody there, and feels nothing.
-fn unfelt(world: &World, pair: &Pair, (time, step): (f64, u64)) -> Option<Notice> {
-    let bit = pair.bit?;
-    let (contacts, axes) = (world.get::<ToolContacts>(pair.body)?, world.get::<ConstrainedAxes>(pair.body)?);
-    let (rest, u) = (world.get::<RestPosition>(pair.body)?, world.get::<Displacement>(pair.body)?);
-    let (mut count, mut deepest) = (0, 0.0_f64);
-    for (&row, &mask) in contacts.rows.iter().zip(&contacts.masks) {
-        let at = row as usize;
-        if mask >> bit & 1 == 1 && axes[at] == ALL_AXES {
+/// What to say of nodes inside a guided tool that are moved otherwise: fixed or moved as told, it feels nothing of
+/// them; held by another closed tool, each undoes in every step what the other does, and the force that it feels is by
+/// the step.
+fn unfelt(world: &World, pair: &Pair, (time, step): (f64, u64)) -> [Option<Notice>; 2] {
+    let of_body = |bit: usize| {
+        let (contacts, axes) = (world.get::<ToolContacts>(pair.body)?, world.get::<ConstrainedAxes>(pair.body)?);
+        let (rest, u) = (world.get::<RestPosition>(pair.body)?, world.get::<Displacement>(pair.body)?);
+        let met = contacts.rows.iter().zip(&contacts.masks).filter(move |(_, mask)| **mask >> bit & 1 == 1);
+        let inside = move |row: u32| {
+            let at = row as usize;
             let depth = -pair.geometry.distance(pair.pose.inverse(rest.0[at] + u.vector(at))).0;
-            (count, deepest) = (count + usize::from(depth > PRESSED * pair.edge), deepest.max(depth));
+            (depth > PRESSED * pair.edge).then_some((axes[at] == ALL_AXES, row, depth))
+        };
+        Some(met.filter_map(move |(&row, _)| inside(row)))
+    };
+    let Some(inside) = pair.bit.and_then(of_body) else { return [None, None] };
+    let (mut led, mut held) = ((0, 0.0_f64), (0, 0.0_f64));
+    for (is_led, row, depth) in inside {
+        if is_led {
+            led = (led.0 + 1, led.1.max(depth));
+        } else if holds(world, pair, row) {
+            held = (held.0 + 1, held.1.max(depth));
         }
     }
     let (tool, label) = (&pair.tool, &pair.label);
-    let message = format!(
-        "the tool {tool} is in {} of {label} that are fixed or moved as told, the deepest by {deepest:.3e} m: it feels \
-         nothing of them; hold nodes that it does not reach",
-        if count == 1 { "a node".to_string() } else { format!("{count} nodes") }
-    );
-    let part = format!("{tool} and held nodes of {label}");
-    let criterion = OVERLAP.to_string();
-    (count > 0).then_some(Notice { criterion, part, time, step, value: 1.0, limit: 0.0, message })
+    let notice = |(count, deepest): (usize, f64), of: &str, that: &str, then: &str| {
+        let nodes = if count == 1 { "a node".to_string() } else { format!("{count} nodes") };
+        let message =
+            format!("the tool {tool} is in {nodes} of {label} that {that}, the deepest by {deepest:.3e} m: {then}");
+        let (criterion, part) = (OVERLAP.to_string(), format!("{tool} and {of} nodes of {label}"));
+        (count > 0).then_some(Notice { criterion, part, time, step, value: 1.0, limit: 0.0, message })
+    };
+    [
+        notice(led, "led", "are fixed or moved as told", "it feels nothing of them; hold nodes that it does not reach"),
+        notice(
+            held,
+            "held",
+            "another closed tool holds",
+            "both want them elsewhere, and what each feels is by the step; hold nodes that it does not reach",
+        ),
+    ]
+}
+
+/// Whether a closed tool other than this one holds a node.
+fn holds(world: &World, pair: &Pair, row: u32) -> bool {
+    let (Some(grasps), Some(hold)) = (world.get::<Grasps>(pair.body), world.get::<ToolHold>(pair.body)) else {
+        return false;
+    };
+    let Ok(place) = grasps.rows.binary_search(&row) else { return false };
+    let of = |number: usize| hold.get(grasps.numbers() * place + grasps.numbers_a_grasp() * number + 3);
+    let mut others = grasps.grasps.iter().enumerate().filter(|(_, grasp)| grasp.tool.tool != pair.tool);
+    others.any(|(number, _)| of(number) == 1.0)
 }
 
 fn message(Pair { tool, edge, .. }: &Pair, body: &Placed<'_>, (at, element): (DVec3, usize)) -> String {
