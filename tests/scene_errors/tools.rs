@@ -335,7 +335,7 @@ fn what_can_do_nothing_is_told() {
     let named = "loads: [Gravity(body: \"b\", acceleration: (0, 0, -9.81))],";
     let free = "(shape: Sphere(radius: 0.06), at: (0.05, 0.05, 0.17), free: (mass: 1))";
     let said = told(free, TOUCH, named);
-    assert!(said.contains("warning: `rod` has no weight: gravity acts on bodies that are named"), "{said}");
+    assert!(said.contains("warning: `rod` has no weight: `Gravity` acts on bodies that are named"), "{said}");
     assert_eq!(told(free, TOUCH, &named.replace("body: \"b\", ", "")), "");
 }
 

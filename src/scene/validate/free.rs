@@ -1,6 +1,7 @@
 //! Tools that move freely: whether they weigh something, and what they cannot do.
 
 use super::{Validator, scene, show};
+use crate::scene::load_parts::{LoadParts, On};
 use crate::scene::schema::{Attachment, Free, InitialState, Load, Scene, Shape, Tool};
 use crate::scene::syntax::Path;
 
@@ -64,14 +65,16 @@ fn weight(validator: &mut Validator, path: &Path, tool: &Tool, free: &Free) {
     }
 }
 
-/// Gravity of single bodies is none of tools.
+/// Weight of single bodies is none of tools.
 fn weightless(scene_: &Scene, validator: &mut Validator, path: &Path, name: &str) {
-    let gravity: Vec<&Load> = scene_.loads.iter().filter(|load| matches!(load, Load::Gravity { .. })).collect();
-    if !gravity.is_empty() && gravity.iter().all(|load| load.parts().body.is_some()) {
+    let all = scene_.loads.iter().map(Load::parts);
+    let of_bodies: Vec<LoadParts<'_>> = all.filter(|load| matches!(load.on, On::Bodies(_))).collect();
+    if let Some(LoadParts { word, .. }) = of_bodies.first().filter(|_| of_bodies.iter().all(|load| load.body.is_some()))
+    {
         validator
             .out
-            .warn_at(path, format!("`{name}` has no weight: gravity acts on bodies that are named"))
-            .note("`Gravity` without `body` acts on all bodies, and on free tools");
+            .warn_at(path, format!("`{name}` has no weight: `{word}` acts on bodies that are named"))
+            .note(format!("`{word}` without `body` acts on all bodies, and on free tools"));
     }
 }
 
