@@ -302,7 +302,9 @@ fn suction(scene_: &Scene, validator: &mut Validator) {
         validator.above_zero(&path.name("reach"), suction.reach, "m");
         validator.not_negative(&path.name("delay"), suction.delay, "s");
         let body = |name: &Option<String>| name.as_ref().or(scene_.bodies.keys().next()).cloned();
-        let is_this = |other: &Suction| other.tool == suction.tool && body(&other.body) == body(&suction.body);
+        let is_this = |other: &Suction| {
+            (&other.tool, other.bore, body(&other.body)) == (&suction.tool, suction.bore, body(&suction.body))
+        };
         if let Some(earlier) = scene_.suction[..number].iter().position(is_this) {
             let message = format!("`{}` sucks at this body by suction[{earlier}] already", suction.tool);
             validator.out.error_at(&path, message).note("leave one of both out");
