@@ -33,6 +33,71 @@ fn may_meet(point: u32, triangle: u32) -> bool {
     return true;
 }
 
+// What a point faces that sees a face near its rim; twin of src/contact/rims.rs.
+fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing, reach_without: f32) -> Facing {
+    let corners = corners_of(facing.triangle, point);
+    let near = ALIKE * surface.edge;
+    let twice = length(cross(corners[1] - corners[0], corners[2] - corners[0]));
+    let is_near_side = facing.weights.x * twice < near * length(corners[2] - corners[1])
+        || facing.weights.y * twice < near * length(corners[0] - corners[2])
+        || facing.weights.z * twice < near * length(corners[1] - corners[0]);
+    if !is_near_side {
+        return facing;
+    }
+    let normal = normal_of(corners);
+    let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+    let toward = dot(own, normal);
+    var most = FAR;
+    var least = -FAR;
+    var flank = facing.triangle;
+    for (var corner = 0u; corner < 3u; corner++) {
+        let node = surface_faces[8u * facing.triangle + corner];
+        let starts = surface.around + node;
+        let all_around = surface.around + surface.nodes + 1u;
+        for (var place = surface_faces[starts]; place < surface_faces[starts + 1u]; place++) {
+            let other = surface_faces[all_around + place];
+            let of_other = corners_of(other, point);
+            let turned = normal_of(of_other);
+            if other == facing.triangle || all(turned == vec3<f32>(0.0)) || dot(turned, normal) >= RIM
+                || dot(turned, middle - of_other[0]) >= 0.0 {
+                continue;
+            }
+            let from_place = array<vec3<f32>, 3>(
+                of_other[0] - facing.at, of_other[1] - facing.at, of_other[2] - facing.at);
+            let depth = bitcast<f32>(surface_faces[8u * other + 7u]);
+            let reach = reach_without + thickness_of(other);
+            if length(nearest(from_place).at) >= near || length(nearest(of_other).at) > max(reach, depth)
+                || !may_meet(number, other) {
+                continue;
+            }
+            let faces = dot(own, turned);
+            least = max(least, faces);
+            if faces < most {
+                most = faces;
+                flank = other;
+            }
+        }
+    }
+    if most >= toward - TURNED_AWAY {
+        if most == FAR || toward >= least - TURNED_AWAY {
+            return facing;
+        }
+        flank = facing.triangle;
+    }
+    let of_flank = corners_of(flank, point);
+    let found = nearest(of_flank);
+    var faced = facing;
+    faced.triangle = flank;
+    faced.weights = found.weights;
+    faced.at = found.at;
+    faced.normal = normal_of(of_flank);
+    faced.gap = -dot(found.at, faced.normal);
+    if faced.gap <= -min(near, bitcast<f32>(surface_faces[8u * flank + 7u])) {
+        return facing;
+    }
+    return faced;
+}
+
 // Whether two faces are walls of a corner that the point is in, and the first is not behind the second.
 fn is_corner(first: Facing, second: Facing, point: vec3<f32>) -> bool {
     let is_before = dot(second.normal, first.at - second.at) > -ALIKE * surface.edge;
@@ -79,8 +144,9 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
             own = normal_of_point(number);
             own_known = true;
         }
+        facing = at_rim(number, point, own, facing, reach_without);
         let turned = dot(facing.normal, own);
-        if turned >= TURNED_AWAY {
+        if turned >= TURNED_AWAY || facing.gap > reach_without + thickness_of(facing.triangle) {
             continue;
         }
         let inside = max(-facing.gap, 0.0) + ALIKE * surface.edge;

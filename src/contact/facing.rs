@@ -1,6 +1,7 @@
 //! The face that a point faces.
 
 use super::candidates::{Candidates, Kept, Listed, NEARER, ON_IT};
+use super::rims::AtRim;
 use super::shortlist::{MOST, Shortlist, Stays};
 use super::surfaces::{Placed, Point, Surfaces};
 use crate::mesh::OnTriangle;
@@ -11,7 +12,7 @@ pub const TURNED_AWAY: f64 = 0.2;
 
 /// What counts for nothing of a distance between two faces that are in a point's way, in edges: there the one that it
 /// faces more is. Nor is a wall one that rises no higher beside a point of a face.
-const ALIKE: f64 = 0.05;
+pub(super) const ALIKE: f64 = 0.05;
 
 /// Two faces are a corner where the cosine between their normals is below this (30°).
 const CORNER: f64 = 0.866;
@@ -112,6 +113,10 @@ impl Surfaces {
         if !(gap >= -depth && gap <= reach) || normal == DVec3::ZERO {
             return true;
         }
+        let facing = Facing { triangle: triangles[number], weights, at: nearest, normal, gap };
+        if short.may_have_rim(number) && self.is_near_side(now.places, &facing, edge) {
+            return false;
+        }
         let is_turned_away = match point.triangle {
             Some(triangle) => normal.dot(own.normal(self, now, triangle)) < TURNED_AWAY,
             // of one at a rim, with walls beside it, its own normal is asked
@@ -122,7 +127,7 @@ impl Surfaces {
             }
         };
         if is_turned_away {
-            faced.first = Some(Facing { triangle: triangles[number], weights, at: nearest, normal, gap });
+            faced.first = Some(facing);
         }
         true
     }
@@ -154,7 +159,9 @@ impl Surfaces {
     ) {
         let Kept { nearest, around } = kept;
         let mut candidates = Candidates::new((self, now), point.place(now.places), listed, edge, nearest);
-        let mut way = Way { surfaces: self, now, point, edge, own: None, waiting: None, faced: [None; 2] };
+        let reach = &reach;
+        let (triangles, waiting, faced_yet) = (listed.triangles, None, [None; 2]);
+        let mut way = Way { surfaces: self, now, point, triangles, reach, edge, own: None, waiting, faced: faced_yet };
         let mut wakes = f64::INFINITY;
         let mut look = |candidates: &Candidates<'_, '_>, number: usize, triangle: u32| {
             let &(found, distance) = candidates.nearest(number);
@@ -192,7 +199,8 @@ impl Surfaces {
                     let stays_so = |(own, of_own): &(DVec3, f64)| own.dot(normal) < -(of_own + turn + of_own * turn);
                     point.triangle.is_none() && around.iter().all(stays_so)
                 };
-                *short = Shortlist::of(listed.triangles, away, nearest, turned);
+                let rims = |place: usize| self.may_have_rim(now, listed.triangles[place], stays.moved);
+                *short = Shortlist::of(listed.triangles, away, nearest, (turned, rims));
                 // what stays away is in nobody's way now
                 for (place, triangle) in listed.triangles.iter().enumerate() {
                     if !listed.is_far(place) && short.triangles().is_none_or(|left| left.contains(triangle)) {
@@ -222,7 +230,7 @@ impl Surfaces {
 
     /// By how much the unit normal of a triangle with sides a, b and area A changes at most, as long as no two nodes
     /// move against each other by more than a distance m: 2 m (a + b + m)/2A.
-    fn turns(&self, now: Placed<'_>, triangle: u32, moved: f64) -> f64 {
+    pub(super) fn turns(&self, now: Placed<'_>, triangle: u32, moved: f64) -> f64 {
         let [a, b, c] = self.corners(now.places, triangle);
         let (one, other) = (b - a, c - a);
         2.0 * moved * (one.length() + other.length() + moved) / one.cross(other).length()
@@ -243,10 +251,13 @@ fn in_way(facing: &Facing, turned: f64, edge: f64) -> f64 {
 }
 
 /// The faces that are in a point's way, of those seen so far.
-struct Way<'a> {
+struct Way<'a, R> {
     surfaces: &'a Surfaces,
     now: Placed<'a>,
     point: &'a Point,
+    /// The triangles that may be near it, and how far each is looked at (m).
+    triangles: &'a [u32],
+    reach: &'a R,
     edge: f64,
     /// The point's own normal, once somebody has asked for it.
     own: Option<DVec3>,
@@ -256,7 +267,7 @@ struct Way<'a> {
     faced: [Option<(Facing, f64)>; 2],
 }
 
-impl Way<'_> {
+impl<R: Fn(u32) -> f64> Way<'_, R> {
     fn see(&mut self, facing: Facing) {
         if self.waiting.is_none() && self.own.is_none() {
             self.waiting = Some(facing);
@@ -274,8 +285,10 @@ impl Way<'_> {
             Some(triangle) => surfaces.normal_now(now, triangle),
             None => surfaces.normal_of_node(now, point.nodes[0]),
         });
+        let at_rim = AtRim { at: point.place(now.places), own, listed: self.triangles, edge };
+        let facing = surfaces.flank(now, &at_rim, &facing, self.reach).unwrap_or(facing);
         let turned = facing.normal.dot(own);
-        if turned >= TURNED_AWAY {
+        if turned >= TURNED_AWAY || facing.gap > (self.reach)(facing.triangle) {
             return;
         }
         let is_corner = |first: &Facing, second: &Facing| surfaces.is_corner(now.places, point, [first, second], edge);
@@ -299,7 +312,9 @@ impl Way<'_> {
     /// What is in its way: where only one was seen, that it is turned away is all that is asked.
     fn finish(mut self) -> [Option<Facing>; 2] {
         if let Some(only) = self.waiting.take() {
+            let at_rim = self.surfaces.is_near_side(self.now.places, &only, self.edge);
             if self.point.triangle.is_none()
+                && !at_rim
                 && self.surfaces.all_turned_away(self.now, self.point.nodes[0], only.normal)
             {
                 return [Some(only), None];

@@ -11,6 +11,7 @@ mod law;
 mod lists;
 mod neighbourhoods;
 mod parts;
+mod rims;
 mod shortlist;
 mod surfaces;
 mod ties;

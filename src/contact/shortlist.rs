@@ -15,6 +15,8 @@ pub struct Shortlist {
     triangles: [u32; MOST],
     /// Which of them stay turned away from all around the point, a node: a bit each.
     turned: u16,
+    /// Which of them may have a rim: a bit each.
+    rims: u16,
     /// How many, or [`NONE`].
     count: u8,
 }
@@ -30,15 +32,15 @@ pub struct Stays {
 
 impl Shortlist {
     /// Of a point that has not been looked at.
-    pub const UNKNOWN: Self = Self { wakes: f64::INFINITY, triangles: [0; MOST], turned: 0, count: NONE };
+    pub const UNKNOWN: Self = Self { wakes: f64::INFINITY, triangles: [0; MOST], turned: 0, rims: 0, count: NONE };
 
     /// Of a list of triangles, without those that stay away, each of which is so far (m), and with which of the others
-    /// stay turned away; all by their places in the list.
+    /// stay turned away, and which may have a rim; all by their places in the list.
     pub(super) fn of(
         triangles: &[u32],
         away: impl Fn(usize) -> bool,
         nearest: impl Fn(usize) -> f64,
-        turned: impl Fn(usize) -> bool,
+        (turned, rims): (impl Fn(usize) -> bool, impl Fn(usize) -> bool),
     ) -> Self {
         let mut short = Self { count: 0, ..Self::UNKNOWN };
         for (place, &triangle) in triangles.iter().enumerate() {
@@ -49,6 +51,7 @@ impl Shortlist {
             let Some(free) = short.triangles.get_mut(usize::from(short.count)) else { return Self::UNKNOWN };
             *free = triangle;
             short.turned |= u16::from(turned(place)) << short.count;
+            short.rims |= u16::from(rims(place)) << short.count;
             short.count += 1;
         }
         short
@@ -70,6 +73,12 @@ impl Shortlist {
     #[inline]
     pub(super) fn is_turned_away(&self, number: usize) -> bool {
         self.turned >> number & 1 == 1
+    }
+
+    /// Whether the one of that number may have a rim.
+    #[inline]
+    pub(super) fn may_have_rim(&self, number: usize) -> bool {
+        self.rims >> number & 1 == 1
     }
 }
 

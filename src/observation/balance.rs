@@ -31,8 +31,8 @@ pub(super) fn balance(
     last: bool,
     world: &World,
 ) -> (f64, f64) {
-    let Held { lasting: held, all, viscous } = held_by(seen, world);
-    memory.scale = memory.scale.max(all).max(seen.internal_work.abs());
+    see_scale(memory, seen, world);
+    let Held { lasting: held, viscous, .. } = held_by(seen, world);
     if settings.limits.off.contains(&Guard::Energy) {
         return (0.0, held);
     }
@@ -65,6 +65,11 @@ pub(super) fn balance(
         warn(memory, world, "energy", "", share, limit, message);
     }
     (made, held)
+}
+
+/// Notes the largest energy so far.
+pub(super) fn see_scale(memory: &mut GuardMemory, seen: &Sample, world: &World) {
+    memory.scale = memory.scale.max(held_by(seen, world).all).max(seen.internal_work.abs());
 }
 
 /// What is held (J).

@@ -1,7 +1,7 @@
 //! Guards: what kernels found wrong in passing, and what a sample of energies and elements shows, told in the author's
 //! words.
 
-use super::balance::{balance, rattling, shorter_steps};
+use super::balance::{balance, rattling, see_scale, shorter_steps};
 use super::rounding::Rounding;
 use super::sample::{Sample, sample, sample_result};
 use crate::backend::cpu::BlockSums;
@@ -211,6 +211,19 @@ pub(super) fn check_balance(
     let body = bodies(world);
     let broken = instability(world, settings, body, what, &cause, criterion, good_until);
     Err(Error::Unstable(Box::new(broken)))
+}
+
+/// Notes how large energies are, the smallest J and the fastest node, and judges nothing: between two checks, so that
+/// what came and went is known of what later imbalances are shares of.
+pub(super) fn look(world: &mut World) -> Result<(), Error> {
+    let seen = sample(world)?;
+    let Some(mut memory) = world.remove_resource::<GuardMemory>() else { return Ok(()) };
+    if not_finite(&seen, world).is_none() {
+        remember(&mut memory, &seen, world);
+        see_scale(&mut memory, &seen, world);
+    }
+    world.insert_resource(memory);
+    Ok(())
 }
 
 fn hourglass(memory: &mut GuardMemory, seen: &Sample, settings: &GuardSettings, world: &World) {

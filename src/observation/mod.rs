@@ -209,12 +209,14 @@ impl Observer {
         Ok(())
     }
 
-    /// The next step, after `step`, at whose end something is due.
+    /// The next step, after `step`, at whose end something is due: at powers of two how large energies are, for what
+    /// begins suddenly has come and gone before the first check.
     pub fn next_due(&self, step: u64) -> u64 {
         let flags = if self.all_on_device { DEVICE_GUARD_STEPS } else { HOST_GUARD_STEPS };
         let mut due = (step / flags + 1) * flags;
         if !self.to_rest {
             due = due.min((step / self.guard_settings.limits.every + 1) * self.guard_settings.limits.every);
+            due = due.min((step + 1).next_power_of_two());
             due = self.checks_again.filter(|&again| again > step).map_or(due, |again| due.min(again));
         }
         if !self.to_rest {
@@ -293,6 +295,8 @@ impl Observer {
             let passed = guards::check_balance(world, self.good_until, &self.guard_settings, last)?;
             self.checks_again = world.get_resource::<GuardMemory>().and_then(GuardMemory::checks_again);
             self.checked_at = if passed { Some(clock.step) } else { self.checked_at };
+        } else if clock.step.is_power_of_two() && !to_rest {
+            guards::look(world)?;
         }
         let moment = match to_rest {
             false => Moment::Step(clock.step, last),

@@ -114,7 +114,7 @@ fn attachments_of_a_part_that_is_turned_pull_turned() {
 }
 
 /// What bodies of so much momentum have (kg m/s), in the middle of the last step.
-fn momentum(simulation: &mut Simulation, bodies: &[&str]) -> DVec3 {
+pub fn momentum(simulation: &mut Simulation, bodies: &[&str]) -> DVec3 {
     let rate = 1.0 / simulation.time_step();
     let of = |body: &&str| -> DVec3 {
         let masses = simulation.masses(body).unwrap();
@@ -125,7 +125,7 @@ fn momentum(simulation: &mut Simulation, bodies: &[&str]) -> DVec3 {
     bodies.iter().map(of).sum()
 }
 
-fn mass(simulation: &mut Simulation, bodies: &[&str]) -> f64 {
+pub fn mass(simulation: &mut Simulation, bodies: &[&str]) -> f64 {
     bodies.iter().flat_map(|body| simulation.masses(body).unwrap()).sum()
 }
 

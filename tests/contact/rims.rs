@@ -1,6 +1,7 @@
 //! What is in front of a face near a rim is not behind the wall that falls off there.
 
-use crate::configurations::cpu_and_long_gpu;
+use crate::attachments::{mass, momentum};
+use crate::configurations::{Configuration, cpu_and_long_gpu, near};
 
 /// A block that slides over another with all of its lower face on it: nodes of the lower block that are well behind the
 /// upper one's walls are before its lower face, whose bent rim lies a little in front of theirs.
@@ -26,6 +27,44 @@ fn a_sliding_block_is_no_deeper_in_than_it_sinks() {
                 assert!(deepest > 0.0 && deepest < 4e-5, "{}, {points}: {deepest} m", run.name);
             } else {
                 assert!(run.name.contains("GPU"), "{}", run.name);
+            }
+        }
+    }
+}
+
+/// A block of 10 mm that slides over a finer slab, 18 mm far: what it keeps of 300 mm/s.
+fn keeps(run: &Configuration, fixed: &str, elements: &str, (contact, solver): (&str, &str)) -> f64 {
+    let mut simulation = run.start(&format!(
+        "(duration: 0.06, {solver} bodies: {{
+            \"slab\": (mesh: Box(size: (0.06, 0.02, 0.01), cells: (24, 8, 2), elements: {elements}), material: \"m\"),
+            \"block\": (mesh: Box(size: (0.01, 0.01, 0.01), cells: (2, 2, 2), elements: {elements}), material: \"m\",
+                translate: (0.007, 0.005, 0.01), velocity: (0.3, 0, 0))}},
+        materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 1e5, poisson: 0.3), stiffness_damping: 1e-4)}},
+        constraints: [Fixed(body: \"slab\", on: {fixed})],
+        loads: [Gravity(acceleration: (0, 0, -9.81), body: \"block\")],
+        contacts: [Between(bodies: (\"slab\", \"block\"), {contact})])"
+    ));
+    simulation.advance_to(0.06).unwrap();
+    momentum(&mut simulation, &["block"]).x / (0.3 * mass(&mut simulation, &["block"]))
+}
+
+/// Without friction all of it, with friction all but μ g t; by every law, over a slab that does not deform and one that
+/// does. What sinks in by micrometres is before the block's front wall, as high as that above its rim.
+#[test]
+fn what_slides_is_braked_by_friction_alone() {
+    let [step, spring] = ["solver: Implicit(step: 1e-3),", "law: Penalty(share: 0.5)"];
+    let laws =
+        [("", ""), ("points: Faces", ""), ("sweeps: 16", ""), (spring, ""), (spring, step), ("friction: 0.3", "")];
+    let implicit = format!("friction: 0.3, {spring}");
+    for run in cpu_and_long_gpu() {
+        for law in laws.into_iter().chain([(&*implicit, step)]) {
+            if run.name.contains("GPU") && !law.1.is_empty() {
+                continue;
+            }
+            let expected = if law.0.contains("friction") { 1.0 - 0.3 * 9.81 * 0.06 / 0.3 } else { 1.0 };
+            for (fixed, elements) in [("All", "Hex8MeanDilatation"), ("Plane(normal: (0, 0, 1), at: 0)", "Tet4")] {
+                let kept = keeps(&run, fixed, elements, law);
+                near(&format!("{}: {law:?}, {fixed}", run.name), kept, expected, 1.0, 2e-3);
             }
         }
     }

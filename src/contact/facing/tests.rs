@@ -26,7 +26,13 @@ pub(in crate::contact) fn by_shortlist(
 }
 
 /// What a point faces, with the normals of all triangles found for it.
-fn faced(surfaces: &Surfaces, places: &[DVec3], point: &Point, triangles: &[u32], reach: impl Fn(u32) -> f64) -> Faced {
+pub(in crate::contact) fn faced(
+    surfaces: &Surfaces,
+    places: &[DVec3],
+    point: &Point,
+    triangles: &[u32],
+    reach: impl Fn(u32) -> f64,
+) -> Faced {
     let all = 0..surfaces.triangles.len() as u32;
     let normals: Vec<DVec3> = all.map(|triangle| surfaces.normal(places, triangle)).collect();
     let distances = vec![0.0; triangles.len()];

@@ -1,0 +1,54 @@
+#![allow(clippy::expect_used)]
+
+use super::super::facing::tests::faced;
+use crate::contact::{Point, Surfaces};
+use glam::DVec3;
+
+/// A cube of edges of one metre whose lower face is at height 0 and whose front wall at x = 1, and a small triangle of
+/// another body with its first corner at a place, whose normal is given.
+fn before_cube(at: DVec3, own: DVec3) -> (Surfaces, Vec<DVec3>) {
+    let corner = |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2));
+    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let cut = sides.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    let triangles: Vec<[u32; 3]> = cut.chain([[8, 9, 10]]).collect();
+    let along = own.any_orthonormal_vector();
+    let places = (0..8).map(corner).chain([at, at + 0.1 * along, at + 0.1 * own.cross(along)]).collect();
+    (Surfaces::new(11, triangles, [vec![0; 12], vec![1]].concat(), vec![0.5; 13]), places)
+}
+
+/// What the first corner of the triangle faces: normal and gap (m) of the face in its way, and whether there is another.
+fn sees(at: [f64; 3], own: DVec3) -> (DVec3, f64, bool) {
+    let (surfaces, places) = before_cube(DVec3::from(at), own);
+    let point = Point { triangle: Some(12), ..Point::node(1, 8) };
+    let all: Vec<u32> = (0..12).collect();
+    let found = faced(&surfaces, &places, &point, &all, |_| 0.2);
+    let first = found.first.expect("it faces something");
+    (first.normal, first.gap, found.second.is_some())
+}
+
+/// Of a surface that looks up at the cube: before its wall, a little above its rim, behind it, and below.
+#[test]
+fn what_is_before_a_wall_at_its_rim_faces_the_flank() {
+    // at sides and corners of triangles of the wall, too, and beside the rim's ends
+    for y in [0.013, 0.3, 0.987] {
+        for (beyond, above) in [(0.1, 1e-9), (0.1, 0.04), (0.01, 0.01), (1e-9, 0.03), (-0.02, 0.01), (-1e-9, 1e-9)] {
+            for above in [above, -above] {
+                let (normal, gap, second) = sees([1.0 + beyond, y, above], DVec3::Z);
+                assert!((normal + DVec3::Z).length() < 1e-12, "{beyond}, {above}: {normal}");
+                assert!((gap + above).abs() < 1e-12 && !second, "{beyond}, {above}: {gap}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_well_above_the_rim_or_faces_the_wall_meets_it() {
+    for (above, own) in [(0.06, DVec3::Z), (0.3, DVec3::Z), (0.01, DVec3::NEG_X), (0.01, DVec3::new(-0.8, 0.0, 0.6))] {
+        let (normal, gap, _) = sees([1.01, 0.3, above], own.normalize());
+        assert!((normal - DVec3::X).length() < 1e-12 && (gap - 0.01).abs() < 1e-12, "{above}, {own}: {normal} {gap}");
+    }
+    // who faces both alike is kept off the rim itself
+    let (normal, gap, _) = sees([1.01, 0.3, -0.01], DVec3::new(-1.0, 0.0, 1.0).normalize());
+    let diagonal = DVec3::new(1.0, 0.0, -1.0).normalize();
+    assert!((normal - diagonal).length() < 1e-12 && (gap - 0.01 * 2_f64.sqrt()).abs() < 1e-12, "{normal} {gap}");
+}
