@@ -47,7 +47,7 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing, reach_w
     let normal = normal_of(corners);
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     let toward = dot(own, normal);
-    var most = FAR;
+    var best = FAR;
     var least = -FAR;
     var flank = facing.triangle;
     for (var corner = 0u; corner < 3u; corner++) {
@@ -57,44 +57,50 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing, reach_w
         for (var place = surface_faces[starts]; place < surface_faces[starts + 1u]; place++) {
             let other = surface_faces[all_around + place];
             let of_other = corners_of(other, point);
-            let turned = normal_of(of_other);
-            if other == facing.triangle || all(turned == vec3<f32>(0.0)) || dot(turned, normal) >= RIM
-                || dot(turned, middle - of_other[0]) >= 0.0 {
+            let other_normal = normal_of(of_other);
+            if other == facing.triangle || all(other_normal == vec3<f32>(0.0)) || dot(other_normal, normal) >= RIM
+                || dot(other_normal, middle - of_other[0]) >= 0.0 {
                 continue;
             }
             let from_place = array<vec3<f32>, 3>(
                 of_other[0] - facing.at, of_other[1] - facing.at, of_other[2] - facing.at);
+            let distance = length(nearest(of_other).at);
             let depth = bitcast<f32>(surface_faces[8u * other + 7u]);
-            let reach = reach_without + thickness_of(other);
-            if length(nearest(from_place).at) >= near || length(nearest(of_other).at) > max(reach, depth)
+            if length(nearest(from_place).at) >= near || distance > max(reach_without + thickness_of(other), depth)
                 || !may_meet(number, other) {
                 continue;
             }
-            let faces = dot(own, turned);
-            least = max(least, faces);
-            if faces < most {
-                most = faces;
+            let turned = dot(own, other_normal);
+            least = max(least, turned);
+            if turned < toward - TURNED_AWAY && turned + distance / surface.edge < best {
+                best = turned + distance / surface.edge;
                 flank = other;
             }
         }
     }
-    if most >= toward - TURNED_AWAY {
-        if most == FAR || toward >= least - TURNED_AWAY {
-            return facing;
-        }
-        flank = facing.triangle;
+    if best == FAR && toward >= least - TURNED_AWAY {
+        return facing;
     }
     let of_flank = corners_of(flank, point);
-    let found = nearest(of_flank);
     var faced = facing;
     faced.triangle = flank;
-    faced.weights = found.weights;
-    faced.at = found.at;
     faced.normal = normal_of(of_flank);
-    faced.gap = -dot(found.at, faced.normal);
+    faced.gap = -dot(of_flank[0], faced.normal);
     if faced.gap <= -min(near, bitcast<f32>(surface_faces[8u * flank + 7u])) {
         return facing;
     }
+    // the place below the point, and how far beyond the rim that is
+    faced.at = -faced.gap * faced.normal;
+    let off = array<vec3<f32>, 3>(of_flank[0] - faced.at, of_flank[1] - faced.at, of_flank[2] - faced.at);
+    let across = cross(of_flank[1] - of_flank[0], of_flank[2] - of_flank[0]);
+    let of_b = dot(cross(off[2], off[0]), across) / dot(across, across);
+    let of_c = dot(cross(off[0], off[1]), across) / dot(across, across);
+    faced.weights = vec3<f32>(1.0 - of_b - of_c, of_b, of_c);
+    let beyond = length(nearest(off).at);
+    if beyond >= near && flank == facing.triangle && faced.gap > beyond {
+        return facing;
+    }
+    faced.there = beyond < near;
     return faced;
 }
 
@@ -146,7 +152,7 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
         }
         facing = at_rim(number, point, own, facing, reach_without);
         let turned = dot(facing.normal, own);
-        if turned >= TURNED_AWAY || facing.gap > reach_without + thickness_of(facing.triangle) {
+        if !facing.there || turned >= TURNED_AWAY || facing.gap > reach_without + thickness_of(facing.triangle) {
             continue;
         }
         let inside = max(-facing.gap, 0.0) + ALIKE * surface.edge;

@@ -69,7 +69,7 @@ fn bilinear(at: vec3<f32>, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>, d: vec3<f32
     return vec4<f32>((1.0 - x) * (1.0 - y), x * (1.0 - y), x * y, (1.0 - x) * y);
 }
 
-// A quadrilateral bears a point with all its corners.
+// A quadrilateral bears a point with all its corners, but for one beyond its rim.
 fn parts_of(point: u32, facing: Facing, at: vec3<f32>) -> Parts {
     var parts: Parts;
     let own = face_point(point);
@@ -80,7 +80,8 @@ fn parts_of(point: u32, facing: Facing, at: vec3<f32>) -> Parts {
     let facet = surface.facets + 4u * facing.triangle;
     var borne = vec4<f32>(facing.weights, 0.0);
     var first = 8u * facing.triangle;
-    if surface_faces[facet + 2u] != surface_faces[facet + 3u] {
+    // not beyond a rim
+    if surface_faces[facet + 2u] != surface_faces[facet + 3u] && all(facing.weights >= vec3<f32>(0.0)) {
         first = facet;
         borne = bilinear(facing.at, place_of(surface_faces[facet]) - at, place_of(surface_faces[facet + 1u]) - at,
             place_of(surface_faces[facet + 2u]) - at, place_of(surface_faces[facet + 3u]) - at);

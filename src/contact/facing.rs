@@ -114,7 +114,7 @@ impl Surfaces {
             return true;
         }
         let facing = Facing { triangle: triangles[number], weights, at: nearest, normal, gap };
-        if short.may_have_rim(number) && self.is_near_side(now.places, &facing, edge) {
+        if short.may_have_rim(number) && self.is_at_rim(now, &facing, edge) {
             return false;
         }
         let is_turned_away = match point.triangle {
@@ -286,7 +286,7 @@ impl<R: Fn(u32) -> f64> Way<'_, R> {
             None => surfaces.normal_of_node(now, point.nodes[0]),
         });
         let at_rim = AtRim { at: point.place(now.places), own, listed: self.triangles, edge };
-        let facing = surfaces.flank(now, &at_rim, &facing, self.reach).unwrap_or(facing);
+        let Some(facing) = surfaces.flank(now, &at_rim, facing, self.reach) else { return };
         let turned = facing.normal.dot(own);
         if turned >= TURNED_AWAY || facing.gap > (self.reach)(facing.triangle) {
             return;
@@ -312,7 +312,7 @@ impl<R: Fn(u32) -> f64> Way<'_, R> {
     /// What is in its way: where only one was seen, that it is turned away is all that is asked.
     fn finish(mut self) -> [Option<Facing>; 2] {
         if let Some(only) = self.waiting.take() {
-            let at_rim = self.surfaces.is_near_side(self.now.places, &only, self.edge);
+            let at_rim = self.surfaces.is_at_rim(self.now, &only, self.edge);
             if self.point.triangle.is_none()
                 && !at_rim
                 && self.surfaces.all_turned_away(self.now, self.point.nodes[0], only.normal)

@@ -353,6 +353,10 @@ fn try_scenes(kind: Kind) {
     let has_gpu = gpu_or_reason().is_some();
     let (mut found, mut endings) = (Vec::new(), BTreeMap::new());
     for seed in first..first + count {
+        // many take hours
+        if seed > first && (seed - first) % 500 == 0 {
+            println!("{} scenes, {} findings so far", seed - first, found.len());
+        }
         let gpu = has_gpu && seed % GPU_ONE_IN == 0;
         let tried = std::panic::catch_unwind(|| attempt(seed, kind, gpu));
         let wrong = match tried {

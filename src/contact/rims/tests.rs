@@ -16,14 +16,18 @@ fn before_cube(at: DVec3, own: DVec3) -> (Surfaces, Vec<DVec3>) {
     (Surfaces::new(11, triangles, [vec![0; 12], vec![1]].concat(), vec![0.5; 13]), places)
 }
 
-/// What the first corner of the triangle faces: normal and gap (m) of the face in its way, and whether there is another.
-fn sees(at: [f64; 3], own: DVec3) -> (DVec3, f64, bool) {
+/// What the first corner of the triangle faces: normal and gap (m) of the face in its way, what each corner of that has
+/// of the place below it, and whether there is another.
+fn sees(at: [f64; 3], own: DVec3) -> Option<(DVec3, f64, DVec3, bool)> {
     let (surfaces, places) = before_cube(DVec3::from(at), own);
     let point = Point { triangle: Some(12), ..Point::node(1, 8) };
     let all: Vec<u32> = (0..12).collect();
     let found = faced(&surfaces, &places, &point, &all, |_| 0.2);
-    let first = found.first.expect("it faces something");
-    (first.normal, first.gap, found.second.is_some())
+    found.first.map(|first| {
+        let corners = surfaces.corners(&places, first.triangle);
+        let borne = corners.into_iter().zip(first.weights).map(|(corner, weight)| corner * weight).sum();
+        (first.normal, first.gap, borne, found.second.is_some())
+    })
 }
 
 /// Of a surface that looks up at the cube: before its wall, a little above its rim, behind it, and below.
@@ -31,24 +35,33 @@ fn sees(at: [f64; 3], own: DVec3) -> (DVec3, f64, bool) {
 fn what_is_before_a_wall_at_its_rim_faces_the_flank() {
     // at sides and corners of triangles of the wall, too, and beside the rim's ends
     for y in [0.013, 0.3, 0.987] {
-        for (beyond, above) in [(0.1, 1e-9), (0.1, 0.04), (0.01, 0.01), (1e-9, 0.03), (-0.02, 0.01), (-1e-9, 1e-9)] {
+        for (beyond, above) in [(0.04, 1e-9), (0.04, 0.04), (0.01, 0.01), (1e-9, 0.03), (-0.02, 0.01), (-1e-9, 1e-9)] {
             for above in [above, -above] {
-                let (normal, gap, second) = sees([1.0 + beyond, y, above], DVec3::Z);
+                let (normal, gap, borne, second) = sees([1.0 + beyond, y, above], DVec3::Z).expect("it faces one");
                 assert!((normal + DVec3::Z).length() < 1e-12, "{beyond}, {above}: {normal}");
                 assert!((gap + above).abs() < 1e-12 && !second, "{beyond}, {above}: {gap}");
+                // what it bears is below it, so that forces have no moment
+                let below = DVec3::new(1.0 + beyond, y, 0.0);
+                assert!(borne.distance(below) < 1e-12, "{beyond}, {above}: {borne}");
             }
         }
+        // farther before the wall nothing is in its way, until it is below the rim: that is rounded off
+        for above in [0.04, 1e-9, -1e-9, -0.05] {
+            assert_eq!(sees([1.1, y, above], DVec3::Z), None, "{above}");
+        }
+        let (normal, gap, ..) = sees([1.06, y, -0.08], DVec3::Z).expect("it faces the rim");
+        assert!((normal - DVec3::new(0.6, 0.0, -0.8)).length() < 1e-12 && (gap - 0.1).abs() < 1e-12, "{normal} {gap}");
     }
 }
 
 #[test]
 fn what_is_well_above_the_rim_or_faces_the_wall_meets_it() {
     for (above, own) in [(0.06, DVec3::Z), (0.3, DVec3::Z), (0.01, DVec3::NEG_X), (0.01, DVec3::new(-0.8, 0.0, 0.6))] {
-        let (normal, gap, _) = sees([1.01, 0.3, above], own.normalize());
+        let (normal, gap, ..) = sees([1.01, 0.3, above], own.normalize()).expect("it faces the wall");
         assert!((normal - DVec3::X).length() < 1e-12 && (gap - 0.01).abs() < 1e-12, "{above}, {own}: {normal} {gap}");
     }
     // who faces both alike is kept off the rim itself
-    let (normal, gap, _) = sees([1.01, 0.3, -0.01], DVec3::new(-1.0, 0.0, 1.0).normalize());
     let diagonal = DVec3::new(1.0, 0.0, -1.0).normalize();
+    let (normal, gap, ..) = sees([1.01, 0.3, -0.01], -diagonal).expect("it faces the rim");
     assert!((normal - diagonal).length() < 1e-12 && (gap - 0.01 * 2_f64.sqrt()).abs() < 1e-12, "{normal} {gap}");
 }
