@@ -37,7 +37,7 @@ impl Surfaces {
     ) -> Option<Facing> {
         let &AtRim { at, own, listed, edge } = point;
         let toward = own.dot(self.normal_now(now, facing.triangle));
-        // of the others, the one that it faces most, of equal ones the nearest, and how much the one that it faces least
+        // of the others, the one that it faces most, of equal ones the nearest, and how much what it faces least
         let (mut most, mut least) = (None, f64::NEG_INFINITY);
         let mut best = f64::INFINITY;
         for (other, of_other) in self.flanks(now, &facing, edge) {
