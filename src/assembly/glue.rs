@@ -50,10 +50,10 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
     world.insert_resource(gluing.glue);
 }
 
-/// Tells of ties between nodes that are fixed or moved as told on both sides: no force could move them.
+/// Tells of ties between nodes that are fixed or prescribed on both sides: no force could move them.
 fn between_led_nodes(glue: &Glue, world: &World, diagnostics: &mut Diagnostics) {
     let is_led = |body: usize, row: u32| {
-        world.get::<ConstrainedAxes>(glue.bodies[body]).is_some_and(|axes| axes[row as usize] == 0b111)
+        world.get::<ConstrainedAxes>(glue.bodies[body]).is_some_and(|axes| axes.hold(row as usize))
     };
     let mut counts: BTreeMap<usize, [usize; 2]> = BTreeMap::new();
     for tie in &glue.ties {
@@ -64,8 +64,7 @@ fn between_led_nodes(glue: &Glue, world: &World, diagnostics: &mut Diagnostics) 
         (*led, *all) = (*led + usize::from(of_point && of_face), *all + 1);
     }
     for (number, [led, all]) in counts.into_iter().filter(|(_, [led, _])| *led > 0) {
-        let message =
-            format!("{led} of its {all} points are between nodes that are fixed or moved as told on both sides");
+        let message = format!("{led} of its {all} points are between nodes that are fixed or prescribed on both sides");
         diagnostics
             .warn_at(format!("attachments[{number}]").as_str(), message)
             .note("no force moves those: there it bears nothing, and never breaks");

@@ -1,7 +1,15 @@
 //! Constraints and removal, with the rows they act on.
 
+use super::ConstrainedAxes;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+
+impl ConstrainedAxes {
+    /// Whether a node does not move freely along any axis.
+    pub(crate) fn hold(&self, row: usize) -> bool {
+        self[row] == 0b111
+    }
+}
 
 /// Nodes that do not move along some axes. The axes are bits of [`ConstrainedAxes`](super::ConstrainedAxes).
 #[derive(Component, Clone, Debug)]

@@ -56,13 +56,13 @@ fn what_slides_is_braked_by_friction_alone() {
     let laws =
         [("", ""), ("points: Faces", ""), ("sweeps: 16", ""), (spring, ""), (spring, step), ("friction: 0.3", "")];
     let implicit = format!("friction: 0.3, {spring}");
+    let slabs = [("All", "Hex8MeanDilatation"), ("Plane(normal: (0, 0, 1), at: 0)", "Tet4")];
     for run in cpu_and_long_gpu() {
-        for law in laws.into_iter().chain([(&*implicit, step)]) {
-            if run.name.contains("GPU") && !law.1.is_empty() {
-                continue;
-            }
+        // a software device takes its time
+        let gpu = run.name.contains("GPU");
+        for law in laws.into_iter().chain([(&*implicit, step)]).filter(|law| !gpu || law.1.is_empty()) {
             let expected = if law.0.contains("friction") { 1.0 - 0.3 * 9.81 * 0.06 / 0.3 } else { 1.0 };
-            for (fixed, elements) in [("All", "Hex8MeanDilatation"), ("Plane(normal: (0, 0, 1), at: 0)", "Tet4")] {
+            for (fixed, elements) in slabs.into_iter().take(if gpu { 1 } else { 2 }) {
                 let kept = keeps(&run, fixed, elements, law);
                 near(&format!("{}: {law:?}, {fixed}", run.name), kept, expected, 1.0, 2e-3);
             }

@@ -130,7 +130,7 @@ fn a_tool_in_fixed_nodes_is_warned_of() {
         assert_eq!(warned(&run.options, "Hex8", &[(4, 0.1, [0.0; 3])], &rest("0")), []);
         let told = warned(&run.options, "Hex8", &[(4, 0.1, [0.0; 3])], &rest("0.1"));
         assert_eq!(told.len(), 1, "{}: {told:?}", run.name);
-        let said = "the tool plane is in 25 nodes of b0 that are fixed or moved as told, the deepest by ";
+        let said = "the tool plane is in 25 nodes of b0 that are fixed or prescribed, the deepest by ";
         assert!(told[0].message.contains(said) && told[0].part == "plane and led nodes of b0", "{told:?}");
     }
 }

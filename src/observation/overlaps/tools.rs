@@ -14,9 +14,6 @@ const DEPTH: f64 = 0.5;
 /// How deep nodes are in a tool, in edges, that are more than at its surface.
 const PRESSED: f64 = 0.01;
 
-/// Bits of a node that has no free axis.
-const ALL_AXES: u32 = 0b111;
-
 /// A tool and a body that it may touch.
 pub(super) struct Pair {
     tool: String,
@@ -59,7 +56,7 @@ pub(super) fn check(world: &World, pairs: &[Pair], memory: &mut GuardMemory, (ti
     }
 }
 
-/// What to say of nodes inside a guided tool that are moved otherwise: fixed or moved as told, it feels nothing of
+/// What to say of nodes inside a guided tool that are moved otherwise: fixed or prescribed, it feels nothing of
 /// them; held by another closed tool, each undoes in every step what the other does, and the force that it feels is by
 /// the step.
 fn unfelt(world: &World, pair: &Pair, (time, step): (f64, u64)) -> [Option<Notice>; 2] {
@@ -70,7 +67,7 @@ fn unfelt(world: &World, pair: &Pair, (time, step): (f64, u64)) -> [Option<Notic
         let inside = move |row: u32| {
             let at = row as usize;
             let depth = -pair.geometry.distance(pair.pose.inverse(rest.0[at] + u.vector(at))).0;
-            (depth > PRESSED * pair.edge).then_some((axes[at] == ALL_AXES, row, depth))
+            (depth > PRESSED * pair.edge).then_some((axes.hold(at), row, depth))
         };
         Some(met.filter_map(move |(&row, _)| inside(row)))
     };
@@ -92,7 +89,7 @@ fn unfelt(world: &World, pair: &Pair, (time, step): (f64, u64)) -> [Option<Notic
         (count > 0).then_some(Notice { criterion, part, time, step, value: 1.0, limit: 0.0, message })
     };
     [
-        notice(led, "led", "are fixed or moved as told", "it feels nothing of them; hold nodes that it does not reach"),
+        notice(led, "led", "are fixed or prescribed", "it feels nothing of them; hold nodes that it does not reach"),
         notice(
             held,
             "held",
