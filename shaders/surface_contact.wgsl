@@ -34,7 +34,7 @@ fn may_meet(point: u32, triangle: u32) -> bool {
 }
 
 // What a point faces that sees a face near its rim; twin of src/contact/rims.rs.
-fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing, reach_without: f32) -> Facing {
+fn at_rim(number: u32, point: vec3<f32>, facing: Facing, reach_without: f32) -> Facing {
     let corners = corners_of(facing.triangle, point);
     let near = ALIKE * surface.edge;
     let twice = length(cross(corners[1] - corners[0], corners[2] - corners[0]));
@@ -46,7 +46,8 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing, reach_w
     }
     let normal = normal_of(corners);
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-    let toward = dot(own, normal);
+    let outside = -dot(corners[0], normal);
+    let toward = turned_of_point(number, normal);
     var best = FAR;
     var least = -FAR;
     var flank = facing.triangle;
@@ -70,9 +71,17 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing, reach_w
                 || !may_meet(number, other) {
                 continue;
             }
-            let turned = dot(own, other_normal);
+            let turned = turned_of_point(number, other_normal);
             least = max(least, turned);
-            if turned < toward - TURNED_AWAY && turned + distance / surface.edge < best {
+            if toward <= SQUARE && turned <= SQUARE {
+                let outside_of_other = -dot(of_other[0], other_normal);
+                if outside_of_other > -min(near, depth) && min(outside, outside_of_other) < near {
+                    var nothing = facing;
+                    nothing.there = false;
+                    return nothing;
+                }
+            } else if (turned <= SQUARE || turned < toward - TURNED_AWAY)
+                && turned + distance / surface.edge < best {
                 best = turned + distance / surface.edge;
                 flank = other;
             }
@@ -92,15 +101,16 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing, reach_w
     // the place below the point, and how far beyond the rim that is
     faced.at = -faced.gap * faced.normal;
     let off = array<vec3<f32>, 3>(of_flank[0] - faced.at, of_flank[1] - faced.at, of_flank[2] - faced.at);
-    let across = cross(of_flank[1] - of_flank[0], of_flank[2] - of_flank[0]);
-    let of_b = dot(cross(off[2], off[0]), across) / dot(across, across);
-    let of_c = dot(cross(off[0], off[1]), across) / dot(across, across);
-    faced.weights = vec3<f32>(1.0 - of_b - of_c, of_b, of_c);
     let beyond = length(nearest(off).at);
     if beyond >= near && flank == facing.triangle && faced.gap > beyond {
         return facing;
     }
-    faced.there = beyond < near;
+    let across = cross(of_flank[1] - of_flank[0], of_flank[2] - of_flank[0]);
+    let of_b = dot(cross(off[2], off[0]), across) / dot(across, across);
+    let of_c = dot(cross(off[0], off[1]), across) / dot(across, across);
+    faced.weights = vec3<f32>(1.0 - of_b - of_c, of_b, of_c);
+    // what is behind the wall is before some face of the flank
+    faced.there = beyond < near && (flank == facing.triangle || outside >= 0.0);
     return faced;
 }
 
@@ -150,7 +160,7 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
             own = normal_of_point(number);
             own_known = true;
         }
-        facing = at_rim(number, point, own, facing, reach_without);
+        facing = at_rim(number, point, facing, reach_without);
         let turned = dot(facing.normal, own);
         if !facing.there || turned >= TURNED_AWAY || facing.gap > reach_without + thickness_of(facing.triangle) {
             continue;

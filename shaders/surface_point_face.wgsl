@@ -23,6 +23,11 @@ fn normal_of_point(point: u32) -> vec3<f32> {
     return normal_of(corners_of(triangle, place_of(surface_faces[8u * triangle])));
 }
 
+// The cosine between a normal and its own.
+fn turned_of_point(point: u32, normal: vec3<f32>) -> f32 {
+    return dot(normal_of_point(point), normal);
+}
+
 // Whether a triangle has a node in common with a point.
 fn is_of_point(point: u32, triangle: u32) -> bool {
     let at = face_point(point);
@@ -80,8 +85,8 @@ fn parts_of(point: u32, facing: Facing, at: vec3<f32>) -> Parts {
     let facet = surface.facets + 4u * facing.triangle;
     var borne = vec4<f32>(facing.weights, 0.0);
     var first = 8u * facing.triangle;
-    // not beyond a rim
-    if surface_faces[facet + 2u] != surface_faces[facet + 3u] && all(facing.weights >= vec3<f32>(0.0)) {
+    // not beyond a rim; of a place on a side rounding may leave a little less than nothing
+    if surface_faces[facet + 2u] != surface_faces[facet + 3u] && all(facing.weights > vec3<f32>(-1e-6)) {
         first = facet;
         borne = bilinear(facing.at, place_of(surface_faces[facet]) - at, place_of(surface_faces[facet + 1u]) - at,
             place_of(surface_faces[facet + 2u]) - at, place_of(surface_faces[facet + 3u]) - at);

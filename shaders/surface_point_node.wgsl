@@ -10,6 +10,18 @@ fn normal_of_point(point: u32) -> vec3<f32> {
     return normal_of_node(point);
 }
 
+// The least cosine between a normal and one of its own.
+fn turned_of_point(point: u32, normal: vec3<f32>) -> f32 {
+    let at = place_of(point);
+    let starts = surface.around + point;
+    let all = surface.around + surface.nodes + 1u;
+    var least = 1.0;
+    for (var place = surface_faces[starts]; place < surface_faces[starts + 1u]; place++) {
+        least = min(least, dot(normal_of(corners_of(surface_faces[all + place], at)), normal));
+    }
+    return least;
+}
+
 // Whether a triangle has a node in common with a point.
 fn is_of_point(point: u32, triangle: u32) -> bool {
     return has_corner(triangle, point);

@@ -27,6 +27,9 @@ pub struct GuardMemory {
     pub scale: f64,
     /// The largest imbalance so far, as a share of the scale then; positive where energy was made.
     pub imbalance: f64,
+    /// The longest step of all checks (s).
+    #[serde(default)]
+    pub longest_step: f64,
     /// The largest elastic energy (J) of each part so far.
     pub peaks: BTreeMap<String, f64>,
     /// The largest share of hourglass energy of each part so far.
@@ -72,7 +75,8 @@ pub struct Extreme {
 #[serde(deny_unknown_fields)]
 pub struct Notice {
     /// The guard: `energy` or `hourglass`, `contact` for springs that make energy; `overlap` for bodies that are where
-    /// others are; `implicit_step` for a residual that an implicit step left.
+    /// others are; `contact_stiffness` for springs that have become stiffer with a shorter step; `implicit_step` for a
+    /// residual that an implicit step left.
     pub criterion: String,
     /// The part that it is about, or the two bodies; all bodies when empty.
     pub part: String,

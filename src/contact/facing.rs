@@ -6,6 +6,7 @@ use super::shortlist::{MOST, Shortlist, Stays};
 use super::surfaces::{Placed, Point, Surfaces};
 use crate::mesh::OnTriangle;
 use glam::DVec3;
+use smallvec::{SmallVec, smallvec};
 
 /// Surfaces face one another where the cosine between their normals is below this.
 pub const TURNED_AWAY: f64 = 0.2;
@@ -285,8 +286,7 @@ impl<R: Fn(u32) -> f64> Way<'_, R> {
             Some(triangle) => surfaces.normal_now(now, triangle),
             None => surfaces.normal_of_node(now, point.nodes[0]),
         });
-        let at_rim = AtRim { at: point.place(now.places), own, listed: self.triangles, edge };
-        let Some(facing) = surfaces.flank(now, &at_rim, facing, self.reach) else { return };
+        let Some(facing) = self.beside_rims(facing) else { return };
         let turned = facing.normal.dot(own);
         if turned >= TURNED_AWAY || facing.gap > (self.reach)(facing.triangle) {
             return;
@@ -307,6 +307,20 @@ impl<R: Fn(u32) -> f64> Way<'_, R> {
         {
             self.faced[1] = None;
         }
+    }
+
+    /// What is in its way of a face that may be at a rim.
+    fn beside_rims(&self, facing: Facing) -> Option<Facing> {
+        let Self { surfaces, now, point, edge, .. } = *self;
+        if !surfaces.is_at_rim(now, &facing, edge) {
+            return Some(facing);
+        }
+        let own: SmallVec<[DVec3; 8]> = match point.triangle {
+            Some(triangle) => smallvec![surfaces.normal_now(now, triangle)],
+            None => surfaces.around(point.nodes[0]).iter().map(|&own| surfaces.normal_now(now, own)).collect(),
+        };
+        let at_rim = AtRim { at: point.place(now.places), own: &own, listed: self.triangles, edge };
+        surfaces.flank(now, &at_rim, facing, self.reach)
     }
 
     /// What is in its way: where only one was seen, that it is turned away is all that is asked.

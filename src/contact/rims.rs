@@ -8,26 +8,38 @@ use glam::DVec3;
 /// Flanks of a rim where the cosine between the normals is below this (60°).
 const RIM: f64 = 0.5;
 
+/// A point looks straight at a face where the cosine between the normals is below this (32°).
+const SQUARE: f64 = -0.85;
+
 /// A point that may be at a rim.
 pub(super) struct AtRim<'a> {
     /// Where it is (m).
     pub at: DVec3,
-    /// Its own unit normal.
-    pub own: DVec3,
+    /// The unit normals of its own triangles.
+    pub own: &'a [DVec3],
     /// The triangles that may be near it, ascending.
     pub listed: &'a [u32],
     /// The length of an edge (m).
     pub edge: f64,
 }
 
+impl AtRim<'_> {
+    /// The least cosine between a normal and one of its own: −1 where it looks straight at it.
+    fn turned(&self, normal: DVec3) -> f64 {
+        self.own.iter().map(|own| own.dot(normal)).fold(1.0, f64::min)
+    }
+}
+
 impl Surfaces {
-    /// What a point faces that sees a face near its rim: the flank there that it faces more, as far outside of its
-    /// plane as it is, or as deep inside; nothing where it is farther beyond the rim than a twentieth of an edge, and
-    /// than it is outside. As it is seen where the point is well behind that flank, so that the face is a wall before
-    /// it.
+    /// What a point faces that sees a face near its rim: the flank there that it faces more, as a plane that ends a
+    /// twentieth of an edge beyond the rim. As it is seen where the point is behind that flank by more than that, so
+    /// that the face is a wall before it. `None` where nothing of it is in the point's way, or where another face is
+    /// that sees it, too.
     ///
     /// Without this what slides over a flat surface catches at it: nodes of that are before the slider's front wall,
-    /// too, as high above its rim as rounding has it, or what is sunk in.
+    /// too, as high above its rim as rounding has it, or what is sunk in. Where the point is at a rim of its own that
+    /// looks straight at both flanks, as at a joint that is slid across, less than a twentieth of an edge of the one
+    /// is before the other: then neither is in its way.
     pub(super) fn flank(
         &self,
         now: Placed<'_>,
@@ -35,42 +47,53 @@ impl Surfaces {
         facing: Facing,
         reach: impl Fn(u32) -> f64,
     ) -> Option<Facing> {
-        let &AtRim { at, own, listed, edge } = point;
-        let toward = own.dot(self.normal_now(now, facing.triangle));
-        // of the others, the one that it faces most, of equal ones the nearest, and how much what it faces least
-        let (mut most, mut least) = (None, f64::NEG_INFINITY);
-        let mut best = f64::INFINITY;
+        let &AtRim { at, listed, edge, .. } = point;
+        let outside_of = |triangle: u32| {
+            let normal = self.normal_now(now, triangle);
+            (normal, (at - self.corners(now.places, triangle)[0]).dot(normal))
+        };
+        let deep = |triangle: u32| -f64::min(ALIKE * edge, self.depths[triangle as usize]);
+        let (normal, outside) = outside_of(facing.triangle);
+        let mut toward = None;
+        // the one that it faces most, of equal ones the nearest, and how much what it faces least
+        let (mut most, mut best, mut least) = (None, f64::INFINITY, f64::NEG_INFINITY);
         for (other, of_other) in self.flanks(now, &facing, edge) {
             let distance = at.distance(OnTriangle::nearest(at, self.corners(now.places, other)).at);
             let looked_at = distance <= f64::max(reach(other), self.depths[other as usize]);
             if !looked_at || listed.binary_search(&other).is_err() {
                 continue;
             }
-            let turned = own.dot(of_other);
+            let (toward, turned) = (*toward.get_or_insert_with(|| point.turned(normal)), point.turned(of_other));
             least = f64::max(least, turned);
-            if turned < toward - TURNED_AWAY && turned + distance / edge < best {
-                (most, best) = (Some((other, of_other)), turned + distance / edge);
+            if toward <= SQUARE && turned <= SQUARE {
+                let outside_of_other = outside_of(other).1;
+                if outside_of_other > deep(other) && f64::min(outside, outside_of_other) < ALIKE * edge {
+                    return None;
+                }
+            } else if (turned <= SQUARE || turned < toward - TURNED_AWAY) && turned + distance / edge < best {
+                (most, best) = (Some(other), turned + distance / edge);
             }
         }
-        let (triangle, normal) = match most {
-            Some(other) => other,
+        let triangle = match (most, toward) {
+            (Some(other), _) => other,
             // it is the face itself, not the round about its rim
-            None if toward < least - TURNED_AWAY => (facing.triangle, self.normal_now(now, facing.triangle)),
-            None => return Some(facing),
+            (None, Some(toward)) if toward < least - TURNED_AWAY => facing.triangle,
+            _ => return Some(facing),
         };
-        let corners = self.corners(now.places, triangle);
-        let gap = (at - corners[0]).dot(normal);
-        if gap <= -f64::min(ALIKE * edge, self.depths[triangle as usize]) {
+        let (normal, gap) = outside_of(triangle);
+        if gap <= deep(triangle) {
             return Some(facing);
         }
-        let below = at - gap * normal;
+        let (below, corners) = (at - gap * normal, self.corners(now.places, triangle));
         let beyond = below.distance(OnTriangle::nearest(below, corners).at);
-        if beyond < ALIKE * edge {
-            let weights = weights_in_plane(below, corners);
-            return Some(Facing { triangle, weights, at: below, normal, gap });
+        let is_other = triangle != facing.triangle;
+        if beyond >= ALIKE * edge {
+            // farther beyond it is kept off the rim, as by a thickness
+            return (!is_other && gap > beyond).then_some(facing);
         }
-        // farther beyond it is kept off the rim, as by a thickness
-        (triangle == facing.triangle && gap > beyond).then_some(facing)
+        // what is behind the wall is before some face of the flank
+        let weights = weights_in_plane(below, corners);
+        (!is_other || outside >= 0.0).then_some(Facing { triangle, weights, at: below, normal, gap })
     }
 
     /// Whether a triangle may be at a rim as long as no two nodes move against each other by more than a distance (m).

@@ -156,3 +156,24 @@ pub(super) fn rattling(memory: &mut GuardMemory, made: f64, settings: &GuardSett
     );
     warn(memory, world, "contact", "", share, limit, message);
 }
+
+/// How much stiffer springs of contact become before it is told.
+const STIFFER: f64 = 1.25;
+
+/// Warns of springs of contact that have become stiffer: their stiffness goes with the square of the step, which other
+/// bodies may shorten.
+pub(super) fn stiffened(memory: &mut GuardMemory, settings: &GuardSettings, world: &World) {
+    let step = world.resource::<Clock>().time_step;
+    memory.longest_step = memory.longest_step.max(step);
+    let stiffer = (memory.longest_step / step).powi(2);
+    if settings.implicit || stiffer.is_nan() || stiffer <= STIFFER {
+        return;
+    }
+    let message = format!(
+        "springs of contact are {stiffer:.1} times as stiff as they were: the step has become {step:.3e} s, from {:.3e} s, \
+         and what they bear sinks in less; keep both by `integration: (step: {step:.1e})`, or use `law: Kinematic`, \
+         which has no stiffness",
+        memory.longest_step
+    );
+    warn(memory, world, "contact_stiffness", "", stiffer, STIFFER, message);
+}

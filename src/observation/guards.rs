@@ -1,7 +1,7 @@
 //! Guards: what kernels found wrong in passing, and what a sample of energies and elements shows, told in the author's
 //! words.
 
-use super::balance::{balance, rattling, see_scale, shorter_steps};
+use super::balance::{balance, rattling, see_scale, shorter_steps, stiffened};
 use super::rounding::Rounding;
 use super::sample::{Sample, sample, sample_result};
 use crate::backend::cpu::BlockSums;
@@ -176,6 +176,7 @@ pub(super) fn check_balance(
     if settings.springs {
         let made = super::contacts::loss(world)?.map_or(0.0, |loss| -loss);
         rattling(&mut memory, made, settings, world);
+        stiffened(&mut memory, settings, world);
     }
     let (scale, rounding, passed) = (memory.scale, memory.rounding, memory.in_doubt.is_none());
     world.insert_resource(memory);

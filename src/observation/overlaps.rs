@@ -90,7 +90,9 @@ fn message(found: &Overlap, one: &str, other: &str, meet: bool) -> String {
     format!(
         "{one} and {other} overlap at ({at}) m: the surface of {one} at its node {node} is in element {element} of {other}; {}",
         match meet {
-            true => "contact has let them: finer faces, `sweeps` or slower motion keep them apart better".into(),
+            true =>
+                "contact has let them: finer faces, `points: Faces`, `sweeps` or slower motion keep them apart better"
+                    .into(),
             false => format!("nothing keeps them apart: `contacts: [Between(bodies: (\"{one}\", \"{other}\"))]` does"),
         }
     )

@@ -45,8 +45,8 @@ impl Surface {
     pub(super) fn corners_of(&self, point: &Point, facing: &Facing) -> ([u32; 4], [f64; 4]) {
         if let Some(&facet) = self.facets.get(facing.triangle as usize).filter(|_| point.triangle.is_some())
             && facet[2] != facet[3]
-            // not beyond a rim
-            && facing.weights.iter().all(|&weight| weight >= 0.0)
+            // not beyond a rim; of a place on a side rounding may leave a little less than nothing
+            && facing.weights.iter().all(|&weight| weight > -1e-9)
         {
             return (facet, bilinear(facing.at, facet.map(|node| self.places[node as usize])));
         }

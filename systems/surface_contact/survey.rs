@@ -146,7 +146,7 @@ fn survey(
         let firsts = FacePlaces::firsts(columns.face_places, counted);
         for ((face, facet), first_point) in facets_of().zip(firsts) {
             let first = triangles.len();
-            for corners in split(facet, row) {
+            for corners in split(facet).map(|corners| corners.map(row)) {
                 depths.push(
                     0.5 * extent(corners, authoring.cells.nodes(face.element as usize), row, &columns.nodes.rest.0),
                 );
@@ -209,10 +209,9 @@ fn pieces(authoring: &Authoring, rows: &[u32]) -> Vec<u32> {
     rows.iter().map(|&row| of_rows[row as usize]).collect()
 }
 
-/// Triangles of a facet; a quadrilateral is cut between the lower of its corners' rows, so that the same is cut alike
-/// from both sides.
-fn split([a, b, c, d]: [u32; 4], row: impl Fn(u32) -> u32) -> impl Iterator<Item = [u32; 3]> {
-    let [a, b, c, d] = [a, b, c, d].map(row);
+/// Triangles of a facet of the author's nodes; a quadrilateral is cut from the lowest of its corners, so that the same is
+/// cut alike from both sides, and however the scene is turned.
+fn split([a, b, c, d]: [u32; 4]) -> impl Iterator<Item = [u32; 3]> {
     let (first, second) = match c == d {
         true => ([a, b, c], None),
         false if a.min(c) < b.min(d) => ([a, b, c], Some([a, c, d])),

@@ -32,6 +32,7 @@ mod memory;
 mod rest;
 mod rims;
 mod static_friction;
+mod stiffer_springs;
 mod surfaces;
 mod sutures;
 mod sweeps;

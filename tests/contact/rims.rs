@@ -1,7 +1,8 @@
 //! What is in front of a face near a rim is not behind the wall that falls off there.
 
 use crate::attachments::{mass, momentum};
-use crate::configurations::{Configuration, cpu_and_long_gpu, near};
+use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, near};
+use glam::{DVec2, DVec3};
 
 /// A block that slides over another with all of its lower face on it: nodes of the lower block that are well behind the
 /// upper one's walls are before its lower face, whose bent rim lies a little in front of theirs.
@@ -67,5 +68,77 @@ fn what_slides_is_braked_by_friction_alone() {
                 near(&format!("{}: {law:?}, {fixed}", run.name), kept, expected, 1.0, 2e-3);
             }
         }
+    }
+}
+
+/// A block that slides obliquely across the joint of two flush slabs, turned by an angle: its mean displacement and the
+/// speed that is left.
+fn crosses(run: &Configuration, turned: u32, contact: &str, solver: &str) -> [DVec3; 2] {
+    let slab = "(mesh: Box(size: (0.04, 0.08, 0.01), cells: (4, 4, 2), elements: Hex8MeanDilatation), material: \"m\"";
+    let mut simulation = run.start(&format!(
+        "(duration: 0.15, {solver} bodies: {{
+            \"a\": {slab}, translate: (-0.04, -0.04, -0.01)), \"b\": {slab}, translate: (0, -0.04, -0.01)),
+            \"s\": (mesh: Box(size: (0.02, 0.02, 0.01), cells: (3, 3, 2), elements: Hex8MeanDilatation), material: \"m\",
+                rotate: (0, 0, {turned}), translate: (-0.022, -0.015, 0), velocity: (0.16, 0.12, 0))}},
+        materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e5, poisson: 0.3))}},
+        constraints: [Fixed(body: \"a\", on: Set(\"z0\")), Fixed(body: \"b\", on: Set(\"z0\"))],
+        contacts: [Between(bodies: (\"s\", \"a\"), {contact}), Between(bodies: (\"s\", \"b\"), {contact})],
+        loads: [Gravity(acceleration: (0, 0, -9.81))])"
+    ));
+    simulation.advance_to(0.15).unwrap();
+    let (masses, u) = (simulation.masses("s").unwrap(), simulation.displacements("s").unwrap());
+    let all = mass(&mut simulation, &["s"]);
+    let moved = masses.iter().zip(u).map(|(mass, u)| u * *mass).sum::<DVec3>() / all;
+    [moved, momentum(&mut simulation, &["s"]) / all]
+}
+
+/// Nodes at the joint are at rims of their own, which look at the slider's front wall as straight as at its lower face.
+#[test]
+fn a_joint_of_two_slabs_is_slid_across_as_if_there_were_none() {
+    let [step, spring] = ["solver: Implicit(step: 1e-3),", "law: Penalty(share: 0.5)"];
+    for run in cpu_and_long_gpu() {
+        for (turned, contact, solver) in
+            [(0, "", ""), (10, "", ""), (30, "", ""), (0, "points: Faces", ""), (10, spring, ""), (0, spring, step)]
+        {
+            // a software device takes its time
+            if run.name.contains("GPU") && (turned != 10 || !contact.is_empty()) {
+                continue;
+            }
+            let [moved, speed] = crosses(&run, turned, contact, solver);
+            let what = format!("{}: {turned}°, {contact}, {solver}", run.name);
+            let off = speed.truncate().distance(DVec2::new(0.16, 0.12));
+            near(&format!("{what}: speed"), off, 0.0, 0.2, 5e-3);
+            let off = moved.truncate().distance(DVec2::new(0.024, 0.018));
+            near(&format!("{what}: way"), off, 0.0, 0.03, 5e-3);
+        }
+        if !run.name.contains("GPU") {
+            // v²/2μg
+            let [moved, speed] = crosses(&run, 30, "friction: 0.2", "");
+            near(&format!("{}: with friction", run.name), moved.length(), 0.04 / (0.4 * 9.81), 0.01, 1e-2);
+            near(run.name, speed.length(), 0.0, 0.2, 5e-3);
+        }
+    }
+}
+
+/// However a scene is turned, quadrilaterals are cut into the same triangles.
+#[test]
+fn a_scene_that_is_turned_presses_alike() {
+    let sinks = |turned: u32| {
+        let mut simulation = configurations()[0].start(&format!(
+            "(duration: 0.12, integration: (step: 1e-4), parts: {{\"p\": (rotate: (0, 0, {turned}), content: (
+                bodies: {{
+                    \"a\": (mesh: Box(size: (0.03, 0.03, 0.01), cells: (6, 6, 2), elements: Hex8MeanDilatation), material: \"m\"),
+                    \"b\": (mesh: Box(size: (0.01, 0.01, 0.01), cells: (3, 3, 3), elements: Tet4), material: \"m\",
+                        rotate: (0, 0, 20), translate: (0.012, 0.008, 0.0101))}},
+                materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e4, poisson: 0.4), damping: 20)}},
+                constraints: [Fixed(body: \"a\", on: Set(\"z0\"))], contacts: [Between(bodies: (\"a\", \"b\"))]))}},
+            loads: [Gravity(acceleration: (0, 0, -9.81))])"
+        ));
+        simulation.advance_to(0.12).unwrap();
+        simulation.displacements("p.b").unwrap().iter().map(|u| u.z).sum::<f64>()
+    };
+    let straight = sinks(0);
+    for turned in [30, 77, 90] {
+        near(&format!("{turned}°"), sinks(turned), straight, straight.abs(), 1e-9);
     }
 }
