@@ -110,7 +110,7 @@ fn at_rim(number: u32, point: vec3<f32>, facing: Facing, reach_without: f32) -> 
     let of_c = dot(cross(off[0], off[1]), across) / dot(across, across);
     faced.weights = vec3<f32>(1.0 - of_b - of_c, of_b, of_c);
     // what is behind the wall is before some face of the flank
-    faced.there = beyond < near && (flank == facing.triangle || outside >= 0.0);
+    faced.there = beyond < near && (flank == facing.triangle || outside > -1e-3 * surface.edge);
     return faced;
 }
 

@@ -1,5 +1,6 @@
 //! Rims: where two flanks of a surface meet at an edge, which of them a point faces.
 
+use super::candidates::ON_IT;
 use super::facing::{ALIKE, Facing, TURNED_AWAY};
 use super::surfaces::{Placed, Surfaces};
 use crate::mesh::OnTriangle;
@@ -93,7 +94,7 @@ impl Surfaces {
         }
         // what is behind the wall is before some face of the flank
         let weights = weights_in_plane(below, corners);
-        (!is_other || outside >= 0.0).then_some(Facing { triangle, weights, at: below, normal, gap })
+        (!is_other || outside > -ON_IT * edge).then_some(Facing { triangle, weights, at: below, normal, gap })
     }
 
     /// Whether a triangle may be at a rim as long as no two nodes move against each other by more than a distance (m).
