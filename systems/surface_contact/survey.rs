@@ -209,8 +209,8 @@ fn pieces(authoring: &Authoring, rows: &[u32]) -> Vec<u32> {
     rows.iter().map(|&row| of_rows[row as usize]).collect()
 }
 
-/// Triangles of a facet of the author's nodes; a quadrilateral is cut from the lowest of its corners, so that the same is
-/// cut alike from both sides, and however the scene is turned.
+/// Triangles of a facet of the author's nodes; a quadrilateral is cut from the lowest of its corners, so that the same
+/// is cut alike from both sides, and however the scene is turned.
 fn split([a, b, c, d]: [u32; 4]) -> impl Iterator<Item = [u32; 3]> {
     let (first, second) = match c == d {
         true => ([a, b, c], None),
