@@ -34,7 +34,7 @@ fn may_meet(point: u32, triangle: u32) -> bool {
 }
 
 // What a point faces that sees a face near its rim; twin of src/contact/rims.rs.
-fn at_rim(number: u32, point: vec3<f32>, facing: Facing, reach_without: f32) -> Facing {
+fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing) -> Facing {
     let corners = corners_of(facing.triangle, point);
     let near = ALIKE * surface.edge;
     let twice = length(cross(corners[1] - corners[0], corners[2] - corners[0]));
@@ -47,7 +47,8 @@ fn at_rim(number: u32, point: vec3<f32>, facing: Facing, reach_without: f32) -> 
     let normal = normal_of(corners);
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     let outside = -dot(corners[0], normal);
-    let toward = turned_of_point(number, normal);
+    let toward = dot(own, normal);
+    let toward_least = least_of_point(number, normal);
     var best = FAR;
     var least = -FAR;
     var flank = facing.triangle;
@@ -67,23 +68,24 @@ fn at_rim(number: u32, point: vec3<f32>, facing: Facing, reach_without: f32) -> 
                 of_other[0] - facing.at, of_other[1] - facing.at, of_other[2] - facing.at);
             let distance = length(nearest(of_other).at);
             let depth = bitcast<f32>(surface_faces[8u * other + 7u]);
-            if length(nearest(from_place).at) >= near || distance > max(reach_without + thickness_of(other), depth)
-                || !may_meet(number, other) {
+            if length(nearest(from_place).at) >= near || distance > depth || !may_meet(number, other) {
                 continue;
             }
-            let turned = turned_of_point(number, other_normal);
-            least = max(least, turned);
-            if toward <= SQUARE && turned <= SQUARE {
+            let turned = dot(own, other_normal);
+            let turned_least = least_of_point(number, other_normal);
+            if turned_least <= FLUSH && toward_least <= LOOKS {
                 let outside_of_other = -dot(of_other[0], other_normal);
                 if outside_of_other > -min(near, depth) && min(outside, outside_of_other) < near {
                     var nothing = facing;
                     nothing.there = false;
                     return nothing;
                 }
-            } else if (turned <= SQUARE || turned < toward - TURNED_AWAY)
-                && turned + distance / surface.edge < best {
-                best = turned + distance / surface.edge;
-                flank = other;
+            } else if toward_least > FLUSH || turned_least > LOOKS {
+                least = max(least, turned);
+                if turned < toward - TURNED_AWAY && turned + distance / surface.edge < best {
+                    best = turned + distance / surface.edge;
+                    flank = other;
+                }
             }
         }
     }
@@ -160,9 +162,9 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
             own = normal_of_point(number);
             own_known = true;
         }
-        facing = at_rim(number, point, facing, reach_without);
+        facing = at_rim(number, point, own, facing);
         let turned = dot(facing.normal, own);
-        if !facing.there || turned >= TURNED_AWAY || facing.gap > reach_without + thickness_of(facing.triangle) {
+        if !facing.there || turned >= TURNED_AWAY {
             continue;
         }
         let inside = max(-facing.gap, 0.0) + ALIKE * surface.edge;

@@ -3,7 +3,8 @@ const TURNED_AWAY: f32 = 0.2;
 const ALIKE: f32 = 0.05;
 const CORNER: f32 = 0.866;
 const RIM: f32 = 0.5;
-const SQUARE: f32 = -0.85;
+const FLUSH: f32 = -0.99;
+const LOOKS: f32 = -0.5;
 const FAR: f32 = 3e38;
 
 struct OnTriangle {

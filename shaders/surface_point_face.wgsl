@@ -23,8 +23,8 @@ fn normal_of_point(point: u32) -> vec3<f32> {
     return normal_of(corners_of(triangle, place_of(surface_faces[8u * triangle])));
 }
 
-// The cosine between a normal and its own.
-fn turned_of_point(point: u32, normal: vec3<f32>) -> f32 {
+// The cosine between a normal and that of its own triangle.
+fn least_of_point(point: u32, normal: vec3<f32>) -> f32 {
     return dot(normal_of_point(point), normal);
 }
 

@@ -10,8 +10,8 @@ fn normal_of_point(point: u32) -> vec3<f32> {
     return normal_of_node(point);
 }
 
-// The least cosine between a normal and one of its own.
-fn turned_of_point(point: u32, normal: vec3<f32>) -> f32 {
+// The least cosine between a normal and one of its own triangles.
+fn least_of_point(point: u32, normal: vec3<f32>) -> f32 {
     let at = place_of(point);
     let starts = surface.around + point;
     let all = surface.around + surface.nodes + 1u;

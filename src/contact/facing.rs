@@ -160,9 +160,8 @@ impl Surfaces {
     ) {
         let Kept { nearest, around } = kept;
         let mut candidates = Candidates::new((self, now), point.place(now.places), listed, edge, nearest);
-        let reach = &reach;
-        let (triangles, waiting, faced_yet) = (listed.triangles, None, [None; 2]);
-        let mut way = Way { surfaces: self, now, point, triangles, reach, edge, own: None, waiting, faced: faced_yet };
+        let (triangles, waiting) = (listed.triangles, None);
+        let mut way = Way { surfaces: self, now, point, triangles, edge, own: None, waiting, faced: [None; 2] };
         let mut wakes = f64::INFINITY;
         let mut look = |candidates: &Candidates<'_, '_>, number: usize, triangle: u32| {
             let &(found, distance) = candidates.nearest(number);
@@ -252,13 +251,12 @@ fn in_way(facing: &Facing, turned: f64, edge: f64) -> f64 {
 }
 
 /// The faces that are in a point's way, of those seen so far.
-struct Way<'a, R> {
+struct Way<'a> {
     surfaces: &'a Surfaces,
     now: Placed<'a>,
     point: &'a Point,
-    /// The triangles that may be near it, and how far each is looked at (m).
+    /// The triangles that may be near it.
     triangles: &'a [u32],
-    reach: &'a R,
     edge: f64,
     /// The point's own normal, once somebody has asked for it.
     own: Option<DVec3>,
@@ -268,7 +266,7 @@ struct Way<'a, R> {
     faced: [Option<(Facing, f64)>; 2],
 }
 
-impl<R: Fn(u32) -> f64> Way<'_, R> {
+impl Way<'_> {
     fn see(&mut self, facing: Facing) {
         if self.waiting.is_none() && self.own.is_none() {
             self.waiting = Some(facing);
@@ -286,9 +284,9 @@ impl<R: Fn(u32) -> f64> Way<'_, R> {
             Some(triangle) => surfaces.normal_now(now, triangle),
             None => surfaces.normal_of_node(now, point.nodes[0]),
         });
-        let Some(facing) = self.beside_rims(facing) else { return };
+        let Some(facing) = self.beside_rims(facing, own) else { return };
         let turned = facing.normal.dot(own);
-        if turned >= TURNED_AWAY || facing.gap > (self.reach)(facing.triangle) {
+        if turned >= TURNED_AWAY {
             return;
         }
         let is_corner = |first: &Facing, second: &Facing| surfaces.is_corner(now.places, point, [first, second], edge);
@@ -310,17 +308,17 @@ impl<R: Fn(u32) -> f64> Way<'_, R> {
     }
 
     /// What is in its way of a face that may be at a rim.
-    fn beside_rims(&self, facing: Facing) -> Option<Facing> {
+    fn beside_rims(&self, facing: Facing, own: DVec3) -> Option<Facing> {
         let Self { surfaces, now, point, edge, .. } = *self;
         if !surfaces.is_at_rim(now, &facing, edge) {
             return Some(facing);
         }
-        let own: SmallVec<[DVec3; 8]> = match point.triangle {
-            Some(triangle) => smallvec![surfaces.normal_now(now, triangle)],
+        let of_triangles: SmallVec<[DVec3; 8]> = match point.triangle {
+            Some(_) => smallvec![own],
             None => surfaces.around(point.nodes[0]).iter().map(|&own| surfaces.normal_now(now, own)).collect(),
         };
-        let at_rim = AtRim { at: point.place(now.places), own: &own, listed: self.triangles, edge };
-        surfaces.flank(now, &at_rim, facing, self.reach)
+        let (at, listed) = (point.place(now.places), self.triangles);
+        surfaces.flank(now, &AtRim { at, own, of_triangles: &of_triangles, listed, edge }, facing)
     }
 
     /// What is in its way: where only one was seen, that it is turned away is all that is asked.

@@ -9,15 +9,18 @@ use glam::DVec3;
 /// Flanks of a rim where the cosine between the normals is below this (60°).
 const RIM: f64 = 0.5;
 
-/// A point looks straight at a face where the cosine between the normals is below this (32°).
-const SQUARE: f64 = -0.85;
+/// A face lies flush with one of a point's own where the cosine between the normals is below this (8°), and one looks at
+/// it where it is below the second (60°).
+const FLUSH: f64 = -0.99;
+const LOOKS: f64 = -0.5;
 
 /// A point that may be at a rim.
 pub(super) struct AtRim<'a> {
     /// Where it is (m).
     pub at: DVec3,
-    /// The unit normals of its own triangles.
-    pub own: &'a [DVec3],
+    /// Its own unit normal, and those of its own triangles.
+    pub own: DVec3,
+    pub of_triangles: &'a [DVec3],
     /// The triangles that may be near it, ascending.
     pub listed: &'a [u32],
     /// The length of an edge (m).
@@ -25,9 +28,9 @@ pub(super) struct AtRim<'a> {
 }
 
 impl AtRim<'_> {
-    /// The least cosine between a normal and one of its own: −1 where it looks straight at it.
-    fn turned(&self, normal: DVec3) -> f64 {
-        self.own.iter().map(|own| own.dot(normal)).fold(1.0, f64::min)
+    /// The least cosine between a normal and one of its own triangles.
+    fn least(&self, normal: DVec3) -> f64 {
+        self.of_triangles.iter().map(|own| own.dot(normal)).fold(1.0, f64::min)
     }
 }
 
@@ -39,47 +42,43 @@ impl Surfaces {
     ///
     /// Without this what slides over a flat surface catches at it: nodes of that are before the slider's front wall,
     /// too, as high above its rim as rounding has it, or what is sunk in. Where the point is at a rim of its own that
-    /// looks straight at both flanks, as at a joint that is slid across, less than a twentieth of an edge of the one
-    /// is before the other: then neither is in its way.
-    pub(super) fn flank(
-        &self,
-        now: Placed<'_>,
-        point: &AtRim<'_>,
-        facing: Facing,
-        reach: impl Fn(u32) -> f64,
-    ) -> Option<Facing> {
-        let &AtRim { at, listed, edge, .. } = point;
+    /// looks at both, as at a joint that is slid across, it is the flank that lies flush with one of its own faces; of
+    /// two that do neither is in its way, since less than a twentieth of an edge of one is before the other.
+    pub(super) fn flank(&self, now: Placed<'_>, point: &AtRim<'_>, facing: Facing) -> Option<Facing> {
+        let &AtRim { at, own, listed, edge, .. } = point;
         let outside_of = |triangle: u32| {
             let normal = self.normal_now(now, triangle);
             (normal, (at - self.corners(now.places, triangle)[0]).dot(normal))
         };
         let deep = |triangle: u32| -f64::min(ALIKE * edge, self.depths[triangle as usize]);
         let (normal, outside) = outside_of(facing.triangle);
-        let mut toward = None;
+        let (toward, toward_least) = (own.dot(normal), point.least(normal));
         // the one that it faces most, of equal ones the nearest, and how much what it faces least
         let (mut most, mut best, mut least) = (None, f64::INFINITY, f64::NEG_INFINITY);
         for (other, of_other) in self.flanks(now, &facing, edge) {
             let distance = at.distance(OnTriangle::nearest(at, self.corners(now.places, other)).at);
-            let looked_at = distance <= f64::max(reach(other), self.depths[other as usize]);
-            if !looked_at || listed.binary_search(&other).is_err() {
+            // what is as near is in every list
+            if distance > self.depths[other as usize] || listed.binary_search(&other).is_err() {
                 continue;
             }
-            let (toward, turned) = (*toward.get_or_insert_with(|| point.turned(normal)), point.turned(of_other));
-            least = f64::max(least, turned);
-            if toward <= SQUARE && turned <= SQUARE {
+            let (turned, turned_least) = (own.dot(of_other), point.least(of_other));
+            if turned_least <= FLUSH && toward_least <= LOOKS {
                 let outside_of_other = outside_of(other).1;
                 if outside_of_other > deep(other) && f64::min(outside, outside_of_other) < ALIKE * edge {
                     return None;
                 }
-            } else if (turned <= SQUARE || turned < toward - TURNED_AWAY) && turned + distance / edge < best {
-                (most, best) = (Some(other), turned + distance / edge);
+            } else if toward_least > FLUSH || turned_least > LOOKS {
+                least = f64::max(least, turned);
+                if turned < toward - TURNED_AWAY && turned + distance / edge < best {
+                    (most, best) = (Some(other), turned + distance / edge);
+                }
             }
         }
-        let triangle = match (most, toward) {
-            (Some(other), _) => other,
+        let triangle = match most {
+            Some(other) => other,
             // it is the face itself, not the round about its rim
-            (None, Some(toward)) if toward < least - TURNED_AWAY => facing.triangle,
-            _ => return Some(facing),
+            None if toward < least - TURNED_AWAY => facing.triangle,
+            None => return Some(facing),
         };
         let (normal, gap) = outside_of(triangle);
         if gap <= deep(triangle) {
