@@ -162,7 +162,10 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
             own = normal_of_point(number);
             own_known = true;
         }
-        facing = at_rim(number, point, own, facing);
+        // of its own body it may be a face beside its own
+        if surface_faces[8u * triangle + 6u] != surface.body || dot(facing.normal, own) < TURNED_AWAY {
+            facing = at_rim(number, point, own, facing);
+        }
         let turned = dot(facing.normal, own);
         if !facing.there || turned >= TURNED_AWAY {
             continue;

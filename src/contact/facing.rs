@@ -310,7 +310,9 @@ impl Way<'_> {
     /// What is in its way of a face that may be at a rim.
     fn beside_rims(&self, facing: Facing, own: DVec3) -> Option<Facing> {
         let Self { surfaces, now, point, edge, .. } = *self;
-        if !surfaces.is_at_rim(now, &facing, edge) {
+        // of its own body it may be a face beside its own
+        let is_own = surfaces.bodies[facing.triangle as usize] == point.body;
+        if is_own && facing.normal.dot(own) >= TURNED_AWAY || !surfaces.is_at_rim(now, &facing, edge) {
             return Some(facing);
         }
         let of_triangles: SmallVec<[DVec3; 8]> = match point.triangle {

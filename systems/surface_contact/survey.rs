@@ -104,7 +104,9 @@ fn remember(contacts: &mut SurfaceContacts, bodies: &mut Query<(Entity, MeetingC
     surface.pressed.clear();
     let columns: Vec<_> = contacts.bodies.iter().filter_map(|&body| bodies.get(body).ok()).collect();
     for (node, &(body, row)) in (0..).zip(&surface.nodes) {
-        if columns[body as usize].1.force.vector(row as usize) != DVec3::ZERO {
+        // a force that f32 does not know may have left −0
+        let force = columns[body as usize].1.force.vector(row as usize).to_array();
+        if force.iter().any(|number| number.to_bits() != 0) {
             surface.pressed.push(node);
         }
     }
