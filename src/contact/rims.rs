@@ -9,8 +9,8 @@ use glam::DVec3;
 /// Flanks of a rim where the cosine between the normals is below this (60°).
 const RIM: f64 = 0.5;
 
-/// A face lies flush with one of a point's own where the cosine between the normals is below this (8°), and one looks at
-/// it where it is below the second (60°).
+/// A face lies flush with one of a point's own where the cosine between the normals is below this (8°), and that looks
+/// at it where it is below the second (60°).
 const FLUSH: f64 = -0.99;
 const LOOKS: f64 = -0.5;
 
