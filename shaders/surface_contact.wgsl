@@ -104,7 +104,8 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing) -> Faci
     faced.at = -faced.gap * faced.normal;
     let off = array<vec3<f32>, 3>(of_flank[0] - faced.at, of_flank[1] - faced.at, of_flank[2] - faced.at);
     let beyond = length(nearest(off).at);
-    if beyond >= near && flank == facing.triangle && faced.gap > beyond {
+    let on_it = 1e-3 * surface.edge;
+    if beyond >= on_it && flank == facing.triangle && faced.gap > beyond {
         return facing;
     }
     let across = cross(of_flank[1] - of_flank[0], of_flank[2] - of_flank[0]);
@@ -112,7 +113,7 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing) -> Faci
     let of_c = dot(cross(off[0], off[1]), across) / dot(across, across);
     faced.weights = vec3<f32>(1.0 - of_b - of_c, of_b, of_c);
     // what is behind the wall is before some face of the flank
-    faced.there = beyond < near && (flank == facing.triangle || outside > -1e-3 * surface.edge);
+    faced.there = beyond < on_it && (flank == facing.triangle || outside > -on_it);
     return faced;
 }
 

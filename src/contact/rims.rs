@@ -35,8 +35,8 @@ impl AtRim<'_> {
 }
 
 impl Surfaces {
-    /// What a point faces that sees a face near its rim: the flank there that it faces more, as a plane that ends a
-    /// twentieth of an edge beyond the rim. As it is seen where the point is behind that flank by more than that, so
+    /// What a point faces that sees a face near its rim: the flank there that it faces more, as a plane that ends at the
+    /// rim. As it is seen where the point is behind that flank by more than that, so
     /// that the face is a wall before it. `None` where nothing of it is in the point's way, or where another face is
     /// that sees it, too.
     ///
@@ -87,7 +87,7 @@ impl Surfaces {
         let (below, corners) = (at - gap * normal, self.corners(now.places, triangle));
         let beyond = below.distance(OnTriangle::nearest(below, corners).at);
         let is_other = triangle != facing.triangle;
-        if beyond >= ALIKE * edge {
+        if beyond >= ON_IT * edge {
             // farther beyond it is kept off the rim, as by a thickness
             return (!is_other && gap > beyond).then_some(facing);
         }
@@ -102,9 +102,9 @@ impl Surfaces {
         let (normal, turn) = of(triangle);
         self.triangles[triangle as usize].iter().flat_map(|&node| self.around(node)).any(|&other| {
             let (of_other, turn_of_other) = of(other);
-            let (cosine, changes) = (normal.dot(of_other), turn + turn_of_other + turn * turn_of_other);
+            let least = normal.dot(of_other) - (turn + turn_of_other + turn * turn_of_other);
             // a triangle without area has no number
-            other != triangle && !(cosine - changes >= RIM)
+            other != triangle && (least < RIM || least.is_nan())
         })
     }
 

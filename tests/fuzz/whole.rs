@@ -354,7 +354,7 @@ fn try_scenes(kind: Kind) {
     let (mut found, mut endings) = (Vec::new(), BTreeMap::new());
     for seed in first..first + count {
         // many take hours
-        if seed > first && (seed - first) % 500 == 0 {
+        if seed > first && (seed - first).is_multiple_of(500) {
             println!("{} scenes, {} findings so far", seed - first, found.len());
         }
         let gpu = has_gpu && seed % GPU_ONE_IN == 0;
