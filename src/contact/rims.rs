@@ -36,9 +36,9 @@ impl AtRim<'_> {
 
 impl Surfaces {
     /// What a point faces that sees a face near its rim: the flank there that it faces more, as a plane that ends at
-    /// the rim; nothing where the point is farther beyond that than it is outside. As it is seen where the point is well
-    /// behind that flank, so that the face is a wall before it. `None` where nothing of it is in the point's way, or
-    /// where another face is that sees it, too.
+    /// the rim; nothing where the point is farther beyond that than it is outside. As it is seen where the point is
+    /// well behind that flank, so that the face is a wall before it. `None` where nothing of it is in the point's way,
+    /// or where another face is that sees it, too.
     ///
     /// Without this what slides over a flat surface catches at it: nodes of that are before the slider's front wall,
     /// too, as high above its rim as rounding has it, or what is sunk in. Where the point is at a rim of its own that
