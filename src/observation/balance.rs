@@ -129,27 +129,33 @@ pub fn begin(world: &mut World) -> Result<(), Error> {
     Ok(())
 }
 
-/// Warns of springs of contact that make energy (J): what touches and lets go again and again may get more back from
-/// them than it gave.
-pub(super) fn rattling(memory: &mut GuardMemory, made: f64, settings: &GuardSettings, world: &World) {
+/// Warns of contact that gives back more energy than it took (J): what has sunk in is pushed out, and what touches and
+/// lets go again and again may get more back from springs than it gave.
+pub(super) fn gives_back(memory: &mut GuardMemory, made: f64, settings: &GuardSettings, world: &World) {
     let limit = settings.limits.energy.warn;
     let share = (made - memory.rounding) / memory.scale;
     if settings.limits.off.contains(&Guard::Energy) || memory.scale <= 0.0 || share.is_nan() || share <= limit {
         return;
     }
-    let way_out = match settings.implicit {
-        false => {
+    let ((gave, than), way_out) = match (settings.springs, settings.implicit) {
+        (false, _) => (
+            ("contact gave back", "than it took"),
+            "points that began inside or have sunk in are pushed out; more `sweeps` of the contact or finer faces let \
+             less sink in",
+        ),
+        (true, false) => (
+            ("springs of contact gave back", "than they got"),
             "what begins inside is pushed out, or something rattles; a smaller `share`, `damping` of the law, a smaller \
-             integration.safety, or `law: Kinematic`, which makes none"
-        }
-        true => {
-            "what begins inside is pushed out, or a step brought it in before anybody looked; lower `step` of the solver, or \
-             make its steps `adaptive`"
-        }
+             integration.safety, or `law: Kinematic`, which makes none from outside",
+        ),
+        (true, true) => (
+            ("springs of contact gave back", "than they got"),
+            "what begins inside is pushed out, or a step brought it in before anybody looked; lower `step` of the solver, \
+             or make its steps `adaptive`",
+        ),
     };
     let message = format!(
-        "springs of contact gave back {:.1} % of the largest energy so far more than they got ({:.1} % are a warning, {}): \
-         {way_out}",
+        "{gave} {:.1} % of the largest energy so far more {than} ({:.1} % are a warning, {}): {way_out}",
         100.0 * share,
         100.0 * limit,
         settings.limit_of_energy("warn")

@@ -1,7 +1,7 @@
 //! Guards: what kernels found wrong in passing, and what a sample of energies and elements shows, told in the author's
 //! words.
 
-use super::balance::{balance, rattling, see_scale, shorter_steps, stiffened};
+use super::balance::{balance, gives_back, see_scale, shorter_steps, stiffened};
 use super::rounding::Rounding;
 use super::sample::{Sample, sample, sample_result};
 use crate::backend::cpu::BlockSums;
@@ -39,6 +39,8 @@ pub struct GuardSettings {
     pub foreign: bool,
     /// Whether elements may go and take energy with them: what is lost then is no error.
     pub removal: bool,
+    /// Whether something may touch something in a motion, and give energy back.
+    pub contacts: bool,
     /// Whether springs of contact act as loads, and may make energy.
     pub springs: bool,
     /// Whether steps are implicit: limits of energy are ten times those that the scene has.
@@ -173,9 +175,11 @@ pub(super) fn check_balance(
     remember(&mut memory, &seen, world);
     let (made, held) = balance(&mut memory, &seen, settings, last, world);
     hourglass(&mut memory, &seen, settings, world);
-    if settings.springs {
+    if settings.contacts {
         let made = super::contacts::loss(world)?.map_or(0.0, |loss| -loss);
-        rattling(&mut memory, made, settings, world);
+        gives_back(&mut memory, made, settings, world);
+    }
+    if settings.springs {
         stiffened(&mut memory, settings, world);
     }
     let (scale, rounding, passed) = (memory.scale, memory.rounding, memory.in_doubt.is_none());

@@ -35,6 +35,7 @@ pub(super) fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut
         foreign: false,
         removal: world.query::<&Alive>().iter(world).next().is_some(),
         implicit: scene.scene.is_implicit(),
+        contacts: !scene.scene.contacts.is_empty() && clock.relaxation.is_none(),
         springs: scene.scene.contacts.iter().any(|contact| contact.law() != ContactLaw::Kinematic)
             && clock.relaxation.is_none(),
     };

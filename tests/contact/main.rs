@@ -17,6 +17,7 @@ mod faces;
 #[path = "../physics/frames.rs"]
 mod frames;
 mod free_tools;
+mod given_back;
 mod glue;
 mod glued_grasps;
 mod grasp;
