@@ -15,23 +15,31 @@ use bevy_ecs::prelude::*;
 use glam::DVec3;
 
 /// Exposed faces in the mouth that are turned to it are sucked, those at its edge by the share that is within: in every
-/// tenth step it is looked which those are, and what share χ of the mouth they close, seen along its axis. An open
-/// mouth leaks: the pressure goes to Δp χ², and follows in the time that the scene names.
+/// tenth step it is looked which those are, and what share χ of the mouth they close, seen along its axis, with those
+/// of other bodies that the tool sucks at by the same mouth. An open mouth leaks: the pressure goes to Δp χ², and
+/// follows in the time that the scene names.
 ///
 /// A face is exposed while its element is there and its neighbour's is not: what removal bares is sucked at once.
 pub fn system() -> System {
-    System::built_in(
+    let system = System::built_in(
         "suction_mouth",
         Phase::Boundary,
         "finds the faces that tools suck, and by what pressure",
         "an entry under `suction`",
         |world| super::registry::count::<Suction>(world, "tool that sucks", "tools that suck"),
         suction_mouth,
-    )
-    .on_device(kernels)
+    );
+    System { device_when: is_of_one_body, ..system.on_device(kernels) }
 }
 
 type BodyQuery<'a> = (&'a Authoring, &'a RestPosition, &'a Displacement, &'a mut SuctionMarks, &'a mut SuctionPressure);
+
+/// Whether no mouth is of several bodies, which the host adds up.
+fn is_of_one_body(world: &World) -> bool {
+    let Some(mut all) = world.try_query::<&Suction>() else { return false };
+    let mouths: Vec<&Suction> = all.iter(world).collect();
+    mouths.iter().enumerate().all(|(number, one)| !mouths[..number].iter().any(|other| one.has_mouth_of(other)))
+}
 
 fn suction_mouth(
     clock: Res<Clock>,
@@ -40,29 +48,35 @@ fn suction_mouth(
     mut bodies: Query<BodyQuery>,
     blocks: Query<Option<&Alive>, With<Block>>,
 ) -> Result<(), Error> {
-    for (mut suction, body) in &mut all {
+    let is_due = clock.step.is_multiple_of(CRITERION_STEPS);
+    for (suction, body) in all.iter().filter(|_| is_due) {
         let Ok((authoring, rest, displacement, mut marks, mut pressures)) = bodies.get_mut(body.0) else {
             return Err(missing("a column of a body"));
         };
+        let of_block = |&block: &Entity| blocks.get(block).ok().flatten().map(|alive| alive.0.as_slice());
+        let alive: Vec<Option<&[u32]>> = authoring.blocks.iter().map(of_block).collect();
+        let is_there = |face: usize| {
+            let (block, row) = suction.faces.elements[face];
+            alive[block as usize].is_none_or(|alive| alive[row as usize] == 1)
+        };
+        let pose = suction.pose_in(&signals);
+        let place = |node: u32| rest.0[node as usize] - suction.reference + displacement.vector(node as usize);
+        let first = suction.first_mark();
+        mark(suction, &pose, is_there, place, &mut marks[first..first + suction.faces.words()]);
+        pressures.set(suction.share_at(), closed(suction, &pose, place, &marks[first..]));
+    }
+    let of_mouth = |suction: &Suction| {
+        let those = all.iter().filter(|(other, _)| other.has_mouth_of(suction));
+        let share = |(other, body): (&Suction, &OfBody)| Some(bodies.get(body.0).ok()?.4.get(other.share_at()));
+        those.filter_map(share).sum::<f64>().min(1.0)
+    };
+    let shares: Vec<f64> = all.iter().map(|(suction, _)| of_mouth(suction)).collect();
+    for ((mut suction, body), share) in all.iter_mut().zip(shares) {
+        let Ok((.., marks, mut pressures)) = bodies.get_mut(body.0) else { return Err(missing("a column of a body")) };
         let at = SUCTION_NUMBERS * suction.number;
-        let is_due = clock.step.is_multiple_of(CRITERION_STEPS);
-        if is_due {
-            let of_block = |&block: &Entity| blocks.get(block).ok().flatten().map(|alive| alive.0.as_slice());
-            let alive: Vec<Option<&[u32]>> = authoring.blocks.iter().map(of_block).collect();
-            let is_there = |face: usize| {
-                let (block, row) = suction.faces.elements[face];
-                alive[block as usize].is_none_or(|alive| alive[row as usize] == 1)
-            };
-            let pose = suction.pose_in(&signals);
-            let place = |node: u32| rest.0[node as usize] - suction.reference + displacement.vector(node as usize);
-            let first = suction.first_mark();
-            mark(&suction, &pose, is_there, place, &mut marks[first..first + suction.faces.words()]);
-            pressures.set(at + 1, closed(&suction, &pose, place, &marks[first..]));
-        }
-        let (share, follows) = (pressures.get(at + 1), follows(suction.delay, clock.time_step));
         let wanted = signals.values()[suction.pressure][0] * share * share;
         let now = pressures.get(at);
-        pressures.set(at, now + follows * (wanted - now));
+        pressures.set(at, now + follows(suction.delay, clock.time_step) * (wanted - now));
         if is_due {
             suction.renew(&marks, &pressures);
         } else {

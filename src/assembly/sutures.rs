@@ -86,6 +86,10 @@ pub(super) fn measure(world: &mut World, diagnostics: &mut Diagnostics) {
                 )
                 .note("a thread goes from one point to another; what touches is held by `Tie` or `Glue`");
         }
+        if let Some(mut state) = world.get_mut::<SutureState>(suture.ends[0].body) {
+            // until the first step tells
+            state.set(SUTURE_NUMBERS * suture.place + 3, length);
+        }
         let length = *suture.length.get_or_insert(length);
         if suture.tighten > length {
             diagnostics

@@ -111,6 +111,16 @@ impl Suction {
         Pose::of_slots(&signals.values()[self.pose..])
     }
 
+    /// Whether another has the same mouth, or is the same.
+    pub fn has_mouth_of(&self, other: &Self) -> bool {
+        (&self.tool, self.bore) == (&other.tool, other.bore)
+    }
+
+    /// Where the share of the mouth that is closed stands in [`SuctionPressure`].
+    pub fn share_at(&self) -> usize {
+        SUCTION_NUMBERS * self.number + 1
+    }
+
     /// Where its part of [`SuctionMarks`] begins.
     pub fn first_mark(&self) -> usize {
         self.number * self.faces.words()

@@ -66,7 +66,7 @@ pub fn identity(scene: &Scene, world: &mut World) -> Identity {
         for grasps in world.query::<&Grasps>().iter(world) {
             grasps.grasps.iter().for_each(|grasp| of_tool(&grasp.tool.geometry));
         }
-        add("tools and contacts", tools.finish());
+        add("tools, contacts and attachments", tools.finish());
     }
     add("removal", of_text(&scene.removal));
     add("integration", of_text(&scene.integration));

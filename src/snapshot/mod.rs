@@ -291,14 +291,7 @@ fn check(
     }
     let different = identity::differences(&head.identity, &keeping.identity);
     if !different.is_empty() {
-        return foreign(format!(
-            "its {} {} not those of this scene",
-            different.join(", "),
-            match different.len() {
-                1 => "is or are",
-                _ => "are",
-            }
-        ));
+        return foreign(format!("these differ: {}", different.join("; ")));
     }
     let names = |systems: Vec<&String>| systems.into_iter().cloned().collect::<Vec<_>>().join(", ");
     if !head.systems.keys().eq(keeping.systems.keys()) {

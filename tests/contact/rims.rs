@@ -93,6 +93,8 @@ fn crosses(run: &Configuration, turned: u32, contact: &str, solver: &str) -> [DV
 }
 
 /// Nodes at the joint are at rims of their own, which look at the slider's front wall as straight as at its lower face.
+/// At angles a tenth of a degree apart speeds are off by 1e-4 to 4e-3, as the nodes come to cross, and on a GPU, which
+/// rounds otherwise, by as much: a hundredth is allowed.
 #[test]
 fn a_joint_of_two_slabs_is_slid_across_as_if_there_were_none() {
     let [step, spring] = ["solver: Implicit(step: 1e-3),", "law: Penalty(share: 0.5)"];
@@ -107,9 +109,9 @@ fn a_joint_of_two_slabs_is_slid_across_as_if_there_were_none() {
             let [moved, speed] = crosses(&run, turned, contact, solver);
             let what = format!("{}: {turned}°, {contact}, {solver}", run.name);
             let off = speed.truncate().distance(DVec2::new(0.16, 0.12));
-            near(&format!("{what}: speed"), off, 0.0, 0.2, 5e-3);
+            near(&format!("{what}: speed"), off, 0.0, 0.2, 1e-2);
             let off = moved.truncate().distance(DVec2::new(0.024, 0.018));
-            near(&format!("{what}: way"), off, 0.0, 0.03, 5e-3);
+            near(&format!("{what}: way"), off, 0.0, 0.03, 1e-2);
         }
         if !run.name.contains("GPU") {
             // v²/2μg

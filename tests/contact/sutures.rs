@@ -37,6 +37,7 @@ fn a_suture_tears_at_its_strength_and_what_it_stored_is_booked() {
     let text = pulled_apart(stiffness, strength);
     for run in cpu_and_long_gpu() {
         let mut simulation = run.start(&text);
+        near("before the first step", simulation.attachment("stitch").unwrap().length, 0.01, 0.01, 1e-6);
         let (mut most, mut last) = (0.0_f64, 0.0);
         while simulation.time() < 0.6 {
             simulation.advance(1).unwrap();

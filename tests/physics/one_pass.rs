@@ -110,8 +110,7 @@ fn small_bodies_take_many_steps_in_one_dispatch() {
     // where energies are observed, integrate counts them node by node, and invocations need not meet for that
     for (effect, output) in [("prony: (terms: [(alpha: 0.4, tau: 0.05)])", ""), ("", "output: (energies_every: 5),")] {
         let ([steps, dispatches, submissions], together, done) = small_bodies(&run, effect, output, true);
-        // after step 1, 2, 4 … 256 guards look at nodes and elements of both bodies, in a submission of its own
-        let looks = u64::from(steps.ilog2()) + 1;
+        let looks = u64::from(steps.ilog2()) + 1; // of guards after step 1, 2, 4 … 256, at nodes and elements of both
         assert_eq!((steps, dispatches), (300, 2 * (submissions - looks) + 4 * looks));
         assert!(submissions < 100, "{submissions}");
         let ([steps, dispatches, _], apart, done_apart) = small_bodies(&run, effect, output, false);

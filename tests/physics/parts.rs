@@ -111,6 +111,31 @@ fn scale_multiplies_lengths() {
     near("the tool", place.distance(DVec3::new(5e-3, 5e-3, 1.0195)), 0.0, 1e-3, 1e-12);
 }
 
+/// Masses, moments of inertia, speeds and rates are no lengths.
+#[test]
+fn scale_leaves_masses_speeds_and_rates() {
+    let part = r#"bodies: {"b": (mesh: Box(size: (0.08, 0.08, 0.08), cells: (8, 8, 8)), material: "m")},
+        materials: {"m": (density: 1000, neo_hookean: Young(young: 2e4, poisson: 0.4), damping: 50)},
+        constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))],
+        tools: {"ball": (shape: Sphere(radius: 0.02), at: (0, 0, 1),
+                free: (mass: 0.01, inertia: (3e-6, 3e-6, 3e-6), velocity: (0, 0, 0.2), spin: (0, 0, 90))),
+            "tip": (shape: Tube(length: 0.1, inner: 0.02, outer: 0.03), at: (0.04, 0.04, 0.081))},
+        removal: [(when: InTool(tool: "tip", reach: 0.06, rate: 4e-5, crumb: 0))],
+        contacts: [Tool(tool: "ball")]"#;
+    let run = &configurations()[0];
+    for scale in [1.0, 0.5] {
+        let mut simulation =
+            run.start(&format!("(duration: 0.05, parts: {{\"p\": (content: ({part}), scale: {scale})}})"));
+        simulation.advance_to(0.05).unwrap();
+        let free = simulation.tool("p.ball").unwrap().free.unwrap();
+        near("velocity", free.velocity.z, 0.2, 0.2, 1e-9);
+        near("spin", free.angular_momentum.z, 3e-6 * 90.0_f64.to_radians(), 1e-6, 1e-6);
+        let gone = simulation.summary("").unwrap().removed_mass;
+        // up to ten steps of .8 ms pass before it is looked what is in reach, and elements are up to a twelfth
+        near("what is gone", gone, 1000.0 * 2e-6, 1000.0 * 2e-6, 0.25);
+    }
+}
+
 #[test]
 #[ignore = "long"]
 fn what_a_part_brings_changes_while_it_runs_and_snapshots_hold_it() {

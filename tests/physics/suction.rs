@@ -190,3 +190,36 @@ fn bits_with_suction_do_not_depend_on_how_steps_are_taken() {
 fn is_gpu(run: &Configuration) -> bool {
     run.options.precision == Precision::F32 && run.name.starts_with("GPU")
 }
+
+/// The mouth is over the seam of two blocks, which close it together as one of twice the size does.
+#[test]
+fn a_mouth_that_two_bodies_close_is_closed() {
+    let pulled = |run: &Configuration, blocks: &[(f64, f64)]| {
+        let body = |number: usize| ["b", "c"][number];
+        let mesh = |(number, (low, size)): (usize, &(f64, f64))| {
+            let cells = (1e3 * size) as u32;
+            let mesh = format!("Box(size: ({size}, 0.02, 0.004), cells: ({cells}, 20, 2))");
+            format!("\"{}\": (mesh: {mesh}, material: \"m\", translate: ({low}, 0, 0))", body(number))
+        };
+        let each = |text: &str| {
+            (0..blocks.len()).map(|number| text.replace("BODY", body(number))).collect::<Vec<_>>().join(", ")
+        };
+        let mut simulation = run.start(&format!(
+            "(duration: 0.01, bodies: {{{}}},
+            materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e5, poisson: 0.3), damping: 2000)}},
+            constraints: [{}], suction: [{}],
+            tools: {{\"tip\": (shape: Tube(length: 0.03, inner: {BORE}, outer: 8e-3), at: (0, 0.0099, 0.0042))}})",
+            blocks.iter().enumerate().map(mesh).collect::<Vec<_>>().join(", "),
+            each("Fixed(body: \"BODY\", on: Set(\"z0\"))"),
+            each("(tool: \"tip\", body: \"BODY\", pressure: 1e3, reach: 5e-4)"),
+        ));
+        simulation.advance_to(0.01).unwrap();
+        -simulation.tool("tip").unwrap().force.z
+    };
+    for run in cpu_and_long_gpu() {
+        let one = pulled(&run, &[(-0.01, 0.02)]);
+        let two = pulled(&run, &[(-0.01, 0.01), (0.0, 0.01)]);
+        near(&format!("{}: one", run.name), one, PRESSURE * PI * BORE * BORE, PRESSURE * PI * BORE * BORE, 0.03);
+        near(&format!("{}: two", run.name), two, one, one, 1e-2);
+    }
+}

@@ -96,7 +96,7 @@ fn an_instrument_without_a_body_acts_on_the_only_one_around_it() {
     assert_eq!((suction.bore, suction.reach, suction.pressure), (Some(0.2), 0.4, 10.0));
     assert!(format!("{:?}", suction.curve).contains("tip.pedal"));
     let When::InTool { tool, reach, rate, crumb, .. } = &removal.when else { panic!() };
-    assert_eq!((tool.as_str(), *reach, *rate, *crumb), ("tip.needle", 0.2, Some(8e-3), Some(8e-6)));
+    assert_eq!((tool.as_str(), *reach, *rate, *crumb), ("tip.needle", 0.2, Some(1e-3), Some(8e-6)));
     // of two bodies it is asked which, in the instrument's file
     let two = whole.replace("\"tip\":", "\"other\": (scene: \"eye.ron\", translate: (3, 0, 0)),\n        \"tip\":");
     let told = brief(&two, files(), &[]);

@@ -354,3 +354,47 @@ fn what_sucks_or_takes_twice_is_told() {
         "(on: Box(min: (0, 0, 0), max: (0.05, 0.1, 0.1)), when: InTool(tool: \"rod\", reach: 0.02, rate: 1e-6))";
     assert_eq!(told(ROD, TOUCH, &format!("removal: [{entry}, {other}],")), "");
 }
+
+#[test]
+fn what_copies_would_share_is_refused() {
+    let of = |entry: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let body = "mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4)), material: \"m\", copies: 2";
+        let text = format!(
+            "(duration: 0.1, bodies: {{\"b\": ({body})}},
+            materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
+            constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))], {entry},
+            tools: {{\"rod\": (shape: Tube(length: 0.1, inner: 0.02, outer: 0.03), at: (0.05, 0.05, 0.105))}})"
+        );
+        told_of(&text, folder.path())
+    };
+    let said = of("suction: [(tool: \"rod\", pressure: 100, reach: 0.02)]");
+    assert!(said.contains("error: what the tool sucks at is shared by the 2 copies of `b`"), "{said}");
+    let taken = |by: &str| of(&format!("removal: [(when: InTool(tool: \"rod\", reach: 0.02, {by}))]"));
+    let said = taken("rate: 1e-6");
+    assert!(said.contains("error: what the tool takes from is shared by the 2 copies of `b`"), "{said}");
+    assert_eq!(taken("threshold: StretchAbove(1.5)"), "");
+}
+
+#[test]
+fn suction_that_has_begun_before_the_first_step_is_refused() {
+    let sucks = |curve: &str| {
+        let entry = format!("(tool: \"rod\", pressure: 100, bore: 0.01, reach: 0.02{curve})");
+        told(
+            ROD,
+            TOUCH,
+            &format!("start: Equilibrium(), loads: [Gravity(acceleration: (0, 0, -9.81))], suction: [{entry}],"),
+        )
+    };
+    let said = sucks("");
+    assert!(said.contains("error: it sucks at t = 0, and `start: Equilibrium()` knows nothing of suction"), "{said}");
+    assert_eq!(sucks(", curve: Smooth(end: 0.1)"), "");
+}
+
+#[test]
+fn a_law_is_not_asked_for_where_none_is_allowed() {
+    let free = "(shape: Sphere(radius: 0.06), at: (0.05, 0.05, 0.17), free: (mass: 1))";
+    let said = told(free, TOUCH, "solver: Implicit(),");
+    assert!(said.contains("implicit steps do not move free tools"), "{said}");
+    assert!(!said.contains("Penalty"), "{said}");
+}

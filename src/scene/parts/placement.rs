@@ -229,10 +229,8 @@ impl Placement {
             self.pose(&mut place.rotation);
         }
         pivot.iter_mut().for_each(|pivot| self.point(pivot));
-        if let Some(Free { mass, density: _, inertia, velocity, spin, damping: _ }) = free {
-            mass.iter_mut().for_each(|mass| *mass *= self.scale.powi(3));
-            inertia.iter_mut().for_each(|inertia| *inertia *= self.scale.powi(5));
-            self.way(velocity);
+        if let Some(Free { mass: _, density: _, inertia: _, velocity, spin, damping: _ }) = free {
+            self.direction(velocity);
             self.direction(spin);
         }
         for part in moves {
@@ -276,10 +274,11 @@ impl Placement {
 
     pub fn removal(&self, removal: &mut Removal) {
         self.select(&mut removal.on);
-        if let When::InTool { reach, bore, rate, crumb, .. } = &mut removal.when {
+        if let When::InTool { reach, bore, crumb, .. } = &mut removal.when {
             self.length(reach);
             bore.iter_mut().for_each(|bore| self.length(bore));
-            rate.iter_mut().chain(crumb).for_each(|volume| *volume *= self.scale.powi(3));
+            // a few elements, which are so many times as large
+            crumb.iter_mut().for_each(|volume| *volume *= self.scale.powi(3));
         }
     }
 

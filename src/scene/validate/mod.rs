@@ -16,6 +16,7 @@ mod per_copy;
 mod picture;
 mod select;
 mod solver;
+mod suction;
 mod time;
 mod tool;
 

@@ -96,7 +96,12 @@ fn error_control(control: ErrorControl, step: f64, path: &Path, validator: &mut 
 /// Refuses the kinematic law.
 fn refuse_kinematic(scene_: &Scene, message: &str, instead: &str, validator: &mut Validator) {
     let kinematic = |(_, contact): &(usize, &Contact)| contact.law() == ContactLaw::Kinematic;
-    for (number, _) in scene_.contacts.iter().enumerate().filter(kinematic) {
+    // what a free tool touches is told of with the tool, which knows no other law
+    let of_free = |contact: &Contact| match contact {
+        Contact::Tool { tool, .. } => scene_.tools.get(tool).is_some_and(|tool| tool.free.is_some()),
+        Contact::Between { .. } | Contact::Itself { .. } => false,
+    };
+    for (number, _) in scene_.contacts.iter().enumerate().filter(kinematic).filter(|(_, contact)| !of_free(contact)) {
         let note = format!("write `law: Penalty(share: 1)`, a spring that is solved for, or {instead}");
         validator.out.error_at(scene("contacts").index(number), message).note(note);
     }

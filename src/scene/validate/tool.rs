@@ -5,7 +5,7 @@ use super::names::body_named;
 use super::{Validator, scene, select, show};
 use crate::scene::limits::{MOST_BURST, MOST_SWEEPS, TOOLS_OF_A_BODY};
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{Contact, ContactLaw, Follow, Port, Removal, Scene, Shape, Suction, Threshold, Tool, When};
+use crate::scene::schema::{Contact, ContactLaw, Follow, Port, Removal, Scene, Threshold, Tool, When};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use crate::tools::closest_approach;
@@ -42,7 +42,7 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
     }
     contacts(scene_, validator);
     takers(scene_, validator);
-    suction(scene_, validator);
+    super::suction::suction(scene_, validator);
 }
 
 fn geometry(file: &SceneFile, validator: &mut Validator, path: &Path, tool: &Tool) {
@@ -240,6 +240,9 @@ pub(super) fn takes(scene_: &Scene, validator: &mut Validator, path: &Path, remo
         let message = format!("`{tool}` takes the same elements by two entries: they would go twice as fast");
         validator.out.error_at(path, message).note("leave one of both out, or give one of them more");
     }
+    if rate.is_some() {
+        super::suction::of_copies(scene_, validator, path, removal.body.as_ref(), "takes from");
+    }
     if let Some(crumb) = crumb {
         validator.not_negative(&path.name("crumb"), *crumb, "m³");
     }
@@ -288,46 +291,6 @@ fn takers(scene_: &Scene, validator: &mut Validator) {
         if *count == TOOLS_OF_A_BODY + 1 {
             let message = format!("at most {TOOLS_OF_A_BODY} tools may take elements of a body");
             validator.out.error_at(scene("removal").index(number), message);
-        }
-    }
-}
-
-fn suction(scene_: &Scene, validator: &mut Validator) {
-    let mut of_body: BTreeMap<Option<&String>, usize> = BTreeMap::new();
-    for (number, suction) in scene_.suction.iter().enumerate() {
-        let path = scene("suction").index(number);
-        named(scene_, validator, &path, &suction.tool);
-        body_named(scene_, validator, &path, suction.body.as_ref());
-        validator.above_zero(&path.name("pressure"), suction.pressure, "Pa");
-        validator.above_zero(&path.name("reach"), suction.reach, "m");
-        validator.not_negative(&path.name("delay"), suction.delay, "s");
-        let body = |name: &Option<String>| name.as_ref().or(scene_.bodies.keys().next()).cloned();
-        let is_this = |other: &Suction| {
-            (&other.tool, other.bore, body(&other.body)) == (&suction.tool, suction.bore, body(&suction.body))
-        };
-        if let Some(earlier) = scene_.suction[..number].iter().position(is_this) {
-            let message = format!("`{}` sucks at this body by suction[{earlier}] already", suction.tool);
-            validator.out.error_at(&path, message).note("leave one of both out");
-        }
-        let tool = scene_.tools.get(&suction.tool);
-        if let Some(bore) = suction.bore {
-            validator.above_zero(&path.name("bore"), bore, "m");
-        } else if tool.is_some_and(|tool| !matches!(tool.shape, Some(Shape::Tube { .. }))) {
-            validator
-                .out
-                .error_at(&path, format!("the tool `{}` is no tube: where is its mouth?", suction.tool))
-                .note("give `bore`, the radius of a disc about the tool's origin, across its axis z");
-        }
-        if scene_.is_static() {
-            validator
-                .out
-                .error_at(&path, "a static analysis cannot suck: what is sucked depends on the way there")
-                .note("leave `suction` out, or use `analysis: Transient`");
-        }
-        let count = of_body.entry(suction.body.as_ref().or(scene_.bodies.keys().next())).or_default();
-        *count += 1;
-        if *count == TOOLS_OF_A_BODY + 1 {
-            validator.out.error_at(&path, format!("at most {TOOLS_OF_A_BODY} tools may suck at a body"));
         }
     }
 }
