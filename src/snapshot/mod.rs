@@ -291,7 +291,7 @@ fn check(
     }
     let different = identity::differences(&head.identity, &keeping.identity);
     if !different.is_empty() {
-        return foreign(format!("these differ: {}", different.join("; ")));
+        return foreign(format!("these differ: {}", different.join(", ")));
     }
     let names = |systems: Vec<&String>| systems.into_iter().cloned().collect::<Vec<_>>().join(", ");
     if !head.systems.keys().eq(keeping.systems.keys()) {
