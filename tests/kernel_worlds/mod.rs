@@ -214,8 +214,8 @@ impl Effects {
         let energies = if self.energies { "output: (energies_every: 0.1)," } else { "" };
         let sucks = if self.sucks {
             both(
-                "(tool: \"tip\", body: \"BODY\", pressure: 90, bore: 0.025, reach: 0.03, delay: 0.1),
-                 (tool: \"side\", body: \"BODY\", pressure: 80, bore: 0.04, reach: 0.02),",
+                "(tool: \"tip_BODY\", body: \"BODY\", pressure: 90, bore: 0.025, reach: 0.03, delay: 0.1),
+                 (tool: \"side_BODY\", body: \"BODY\", pressure: 80, bore: 0.04, reach: 0.02),",
             )
         } else {
             String::new()
@@ -233,12 +233,12 @@ impl Effects {
                   regions: [(on: Box(min: (0, -1, -1), max: (1, 1, 1)), material: \"plain\")])"
             )
         };
-        let tools = if self.sucks {
-            "tools: {\"tip\": (shape: Sphere(radius: 0.01), at: (0.01, 0.005, 0.05), rotation: (10, 20, 0)),
-                \"side\": (shape: Sphere(radius: 0.01), at: (0.04, 0, 0), rotation: (0, 80, 0))},"
-        } else {
-            ""
-        };
+        // of each body its own: a mouth of both is closed by both, which only the host knows
+        let tools = both(
+            "\"tip_BODY\": (shape: Sphere(radius: 0.01), at: (0.01, 0.005, 0.05), rotation: (10, 20, 0)),
+             \"side_BODY\": (shape: Sphere(radius: 0.01), at: (0.04, 0, 0), rotation: (0, 80, 0)),",
+        );
+        let tools = if self.sucks { format!("tools: {{{tools}}},") } else { String::new() };
         format!(
             "(title: \"effects\", duration: 1, analysis: {analysis},
             bodies: {{ \"tets\": {}, \"hexes\": {} }},

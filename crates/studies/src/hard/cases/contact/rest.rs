@@ -173,7 +173,7 @@ pub fn far_away(trial: &mut Trial<'_>) -> Result<(), Error> {
                     "bodies.other.mesh=Box(size: (0.01, 0.01, 0.01), cells: ({of_other}, {of_other}, {of_other}), elements: {elements})"
                 ),
                 format!("bodies.body.translate={}", at(shift)),
-                format!("bodies.other.translate={}", at(shift + DVec3::new(0.0, 0.0, 0.0201))),
+                format!("bodies.other.translate={}", at(shift + DVec3::new(0.0014, 0.0017, 0.0201))),
                 format!("tools.ball.at={}", at(shift + DVec3::new(0.02, 0.02, 0.0282))),
             ];
             let mut simulation: Simulation = trial.start(&sets)?;
