@@ -13,6 +13,7 @@ use crate::error::{Error, missing};
 use crate::shader;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Exposed faces in the mouth that are turned to it are sucked, those at its edge by the share that is within: in every
 /// tenth step it is looked which those are, and what share χ of the mouth they close, seen along its axis, with those
@@ -37,8 +38,8 @@ type BodyQuery<'a> = (&'a Authoring, &'a RestPosition, &'a Displacement, &'a mut
 /// Whether no mouth is of several bodies, which the host adds up.
 fn is_of_one_body(world: &World) -> bool {
     let Some(mut all) = world.try_query::<&Suction>() else { return false };
-    let mouths: Vec<&Suction> = all.iter(world).collect();
-    mouths.iter().enumerate().all(|(number, one)| !mouths[..number].iter().any(|other| one.has_mouth_of(other)))
+    let mut seen = BTreeSet::new();
+    all.iter(world).all(|suction| seen.insert(suction.mouth))
 }
 
 fn suction_mouth(
@@ -49,8 +50,10 @@ fn suction_mouth(
     blocks: Query<Option<&Alive>, With<Block>>,
 ) -> Result<(), Error> {
     let is_due = clock.step.is_multiple_of(CRITERION_STEPS);
+    // what bodies close of each mouth
+    let mut shares: BTreeMap<usize, f64> = BTreeMap::new();
     for (suction, body) in all.iter().filter(|_| is_due) {
-        let Ok((authoring, rest, displacement, mut marks, mut pressures)) = bodies.get_mut(body.0) else {
+        let Ok((authoring, rest, displacement, mut marks, _)) = bodies.get_mut(body.0) else {
             return Err(missing("a column of a body"));
         };
         let of_block = |&block: &Entity| blocks.get(block).ok().flatten().map(|alive| alive.0.as_slice());
@@ -63,17 +66,14 @@ fn suction_mouth(
         let place = |node: u32| rest.0[node as usize] - suction.reference + displacement.vector(node as usize);
         let first = suction.first_mark();
         mark(suction, &pose, is_there, place, &mut marks[first..first + suction.faces.words()]);
-        pressures.set(suction.share_at(), closed(suction, &pose, place, &marks[first..]));
+        *shares.entry(suction.mouth).or_default() += closed(suction, &pose, place, &marks[first..]);
     }
-    let of_mouth = |suction: &Suction| {
-        let those = all.iter().filter(|(other, _)| other.has_mouth_of(suction));
-        let share = |(other, body): (&Suction, &OfBody)| Some(bodies.get(body.0).ok()?.4.get(other.share_at()));
-        those.filter_map(share).sum::<f64>().min(1.0)
-    };
-    let shares: Vec<f64> = all.iter().map(|(suction, _)| of_mouth(suction)).collect();
-    for ((mut suction, body), share) in all.iter_mut().zip(shares) {
+    for (mut suction, body) in &mut all {
         let Ok((.., marks, mut pressures)) = bodies.get_mut(body.0) else { return Err(missing("a column of a body")) };
-        let at = SUCTION_NUMBERS * suction.number;
+        if let Some(share) = shares.get(&suction.mouth) {
+            pressures.set(suction.share_at(), share.min(1.0));
+        }
+        let (at, share) = (SUCTION_NUMBERS * suction.number, pressures.get(suction.share_at()));
         let wanted = signals.values()[suction.pressure][0] * share * share;
         let now = pressures.get(at);
         pressures.set(at, now + follows(suction.delay, clock.time_step) * (wanted - now));

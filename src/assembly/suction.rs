@@ -18,10 +18,12 @@ use std::sync::Arc;
 pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
     let scene = &assembly.scene.scene;
     let mut of_body: BTreeMap<Entity, (Arc<BodyFaces>, usize)> = BTreeMap::new();
+    let mut mouths: Vec<(&str, f64)> = Vec::new();
     for (number, suction) in scene.suction.iter().enumerate() {
         let (Some(body), Some(tool)) = (assembly.body(&suction.body), scene.tools.get(&suction.tool)) else { continue };
         let Some(bore) = suction.bore.or(bore(tool)) else { continue };
         soft(body, (number, suction), world, diagnostics);
+        mouths.push((&suction.tool, bore));
         let (faces, count) = of_body.entry(body.entity).or_insert_with(|| (Arc::new(faces(body, world)), 0));
         let reference = reference(&body.placed.mesh.points);
         let mut signals = world.resource_mut::<Signals>();
@@ -31,6 +33,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let sucks = Suction {
             tool: suction.tool.clone(),
             number: *count,
+            mouth: mouths.iter().take_while(|&&of| of != (suction.tool.as_str(), bore)).count(),
             pose,
             reference,
             pressure,

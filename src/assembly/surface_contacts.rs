@@ -94,7 +94,7 @@ fn bodies<'a>(assembly: &'a Assembly<'_>, contact: &'a Contact) -> Option<(&'a C
         Contact::Tool { .. } => None,
         Contact::Between { bodies: (a, b), .. } => Some((contact, [a, b])),
         Contact::Itself { body, .. } => {
-            let body = body.as_ref().or(assembly.bodies.keys().next())?;
+            let body = assembly.scene.scene.body_meant(body)?;
             Some((contact, [body, body]))
         }
     }

@@ -21,7 +21,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         };
         let ends = [("from", from), ("to", to)].map(|(field, point)| {
             let body = assembly.body(&point.body)?;
-            let name = point.body.as_ref().or(assembly.bodies.keys().next())?;
+            let name = assembly.scene.scene.body_meant(&point.body)?;
             corners.extend(<[DVec3; 2]>::from(bounds(&body.placed.mesh.points)));
             anchor(name, body, point.at, &format!("attachments[{number}].{field}.at"), diagnostics)
         });

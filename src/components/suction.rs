@@ -85,6 +85,8 @@ pub struct Suction {
     pub tool: String,
     /// Its place among those of the body.
     pub number: usize,
+    /// The mouth's place among all: one that sucks at several bodies has one of these for each.
+    pub mouth: usize,
     /// The first of six slots of [`Signals`]: see [`Signal::Pose`](super::Signal::Pose), from `reference`.
     pub pose: usize,
     /// A point near the body (m), from which places are counted.
@@ -109,11 +111,6 @@ impl Suction {
     /// Where the tool is at the end of the step, seen from the reference.
     pub fn pose_in(&self, signals: &Signals) -> Pose {
         Pose::of_slots(&signals.values()[self.pose..])
-    }
-
-    /// Whether another has the same mouth, or is the same.
-    pub fn has_mouth_of(&self, other: &Self) -> bool {
-        (&self.tool, self.bore) == (&other.tool, other.bore)
     }
 
     /// Where the share of the mouth that is closed stands in [`SuctionPressure`].

@@ -1,4 +1,4 @@
-//! Copies of a body under a tool, in its mouth, and what it takes of them: each does what the body does by itself.
+//! Copies of a body under a tool, and what it takes of them: each does what the body does by itself.
 
 use crate::configurations::{Configuration, cpu_and_long_gpu, near};
 use glam::DVec3;
@@ -16,13 +16,10 @@ fn blocks(run: &Configuration, elements: &str, copies: &str, done: &str) -> Simu
 
 const PRESSED: &str = "tools: {\"tip\": (shape: Sphere(radius: 6e-3), at: (0.041, 0.009, 0.0161), moves: [(displacement: (1e-3, 0, -2e-3), curve: Smooth(end: 0.08))])},
     contacts: [Tool(tool: \"tip\", friction: 0.3)]";
-const SUCKED: &str =
-    "tools: {\"tip\": (shape: Tube(length: 0.03, inner: 4e-3, outer: 6e-3), at: (0.041, 0.009, 0.0102))},
-    contacts: [Tool(tool: \"tip\")], suction: [(tool: \"tip\", pressure: 300, reach: 5e-4, delay: 0.01)]";
 const TAKEN: &str = "tools: {\"tip\": (shape: Tube(length: 0.03, inner: 4e-3, outer: 6e-3), rounding: 5e-4,
         path: [(t: 0, at: (0.041, 0.009, 0.0105)), (t: 0.1, at: (0.041, 0.009, 8e-3))])},
     contacts: [Tool(tool: \"tip\", friction: 0.1)],
-    removal: [(when: InTool(tool: \"tip\", reach: 6e-3, rate: 5e-6))], probes: {\"hole\": (what: RemovedVolume)}";
+    removal: [(when: InTool(tool: \"tip\", reach: 6e-3, threshold: EnergyDensityAbove(8)))], probes: {\"hole\": (what: RemovedVolume)}";
 /// All copies at once.
 const FLAT: &str = "tools: {\"tip\": (shape: Plane(), rotation: (180, 0, 0), at: (0, 0, 0.0101), moves: [(displacement: (1e-3, 0, -1e-3), curve: Smooth(end: 0.08))])},
     contacts: [Tool(tool: \"tip\", friction: 0.3)]";
@@ -31,9 +28,7 @@ const FLAT: &str = "tools: {\"tip\": (shape: Plane(), rotation: (180, 0, 0), at:
 #[ignore = "long"]
 fn copies_under_a_tool_do_what_the_body_does_by_itself() {
     for run in cpu_and_long_gpu() {
-        for (name, done, touched) in
-            [("pressed", PRESSED, 1..2), ("sucked", SUCKED, 1..2), ("taken", TAKEN, 1..2), ("flat", FLAT, 0..3)]
-        {
+        for (name, done, touched) in [("pressed", PRESSED, 1..2), ("taken", TAKEN, 1..2), ("flat", FLAT, 0..3)] {
             for elements in ["Hex8", "Tet4"] {
                 // the one that the tool meets, by itself
                 let place = 0.03;
@@ -65,7 +60,7 @@ fn copies_under_a_tool_do_what_the_body_does_by_itself() {
                     let [a, b] = [&mut alone, &mut copies].map(|simulation| {
                         (simulation.probe("hole").unwrap()[0], simulation.summary("").unwrap().removed_elements)
                     });
-                    assert!(a.1 > 10 && a.1 == b.1, "{what}: {a:?} {b:?}");
+                    assert!(a.1 > 5 && a.1 == b.1, "{what}: {a:?} {b:?}");
                     near(&what, b.0, a.0, a.0, run.bound(1e-12, 1e-5));
                 }
             }

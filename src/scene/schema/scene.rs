@@ -225,6 +225,11 @@ impl Scene {
         self.integration.when_unstable.unwrap_or(if insists { WhenUnstable::Watch } else { WhenUnstable::Adapt })
     }
 
+    /// The body that is meant where this one is named, or none: then the only one.
+    pub(crate) fn body_meant<'a>(&'a self, named: &'a Option<String>) -> Option<&'a String> {
+        named.as_ref().or(self.bodies.keys().next())
+    }
+
     /// Whether a body may lose elements.
     pub fn may_lose_elements(&self, body: &str) -> bool {
         let material = |name: &String| self.materials.get(name).map(|material| material.inversion());

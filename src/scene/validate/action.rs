@@ -87,7 +87,7 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
 
 /// Probes of what a body touches that nothing touches.
 fn untouched(scene_: &Scene, validator: &mut Validator, path: &Path, probe: &Probe) {
-    let Some(body) = probe.body.as_ref().or(scene_.bodies.keys().next()) else { return };
+    let Some(body) = scene_.body_meant(&probe.body) else { return };
     let is = |name: &Option<String>| name.as_ref().is_none_or(|name| name == body);
     let touches = |contact: &Contact| match contact {
         Contact::Tool { body: of, .. } | Contact::Itself { body: of, .. } => is(of),

@@ -32,7 +32,7 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
                     let message = format!("this tool holds the same nodes by attachments[{earlier}] already");
                     validator.out.error_at(&path, message).note("leave one of both out");
                 }
-                let count = of_body.entry(body.as_ref().or(scene_.bodies.keys().next())).or_default();
+                let count = of_body.entry(scene_.body_meant(body)).or_default();
                 *count += 1;
                 if *count == TOOLS_OF_A_BODY + 1 {
                     validator.out.error_at(&path, format!("at most {TOOLS_OF_A_BODY} grasps may hold a body"));

@@ -17,10 +17,10 @@ pub(super) fn suction(scene_: &Scene, validator: &mut Validator) {
         validator.above_zero(&path.name("pressure"), suction.pressure, "Pa");
         validator.above_zero(&path.name("reach"), suction.reach, "m");
         validator.not_negative(&path.name("delay"), suction.delay, "s");
-        of_copies(scene_, validator, &path, suction.body.as_ref(), "sucks at");
-        let body = |name: &Option<String>| name.as_ref().or(scene_.bodies.keys().next()).cloned();
+        of_copies(scene_, validator, &path, &suction.body, "sucks at");
+        let body = scene_.body_meant(&suction.body);
         let is_this = |other: &Suction| {
-            (&other.tool, other.bore, body(&other.body)) == (&suction.tool, suction.bore, body(&suction.body))
+            (&other.tool, other.bore, scene_.body_meant(&other.body)) == (&suction.tool, suction.bore, body)
         };
         if let Some(earlier) = scene_.suction[..number].iter().position(is_this) {
             let message = format!("`{}` sucks at this body by suction[{earlier}] already", suction.tool);
@@ -48,7 +48,7 @@ pub(super) fn suction(scene_: &Scene, validator: &mut Validator) {
                 .error_at(&path, "it sucks at t = 0, and `start: Equilibrium()` knows nothing of suction")
                 .note("let it begin by and by: `curve: Smooth(end: 0.1)`; or leave `start` out");
         }
-        let count = of_body.entry(suction.body.as_ref().or(scene_.bodies.keys().next())).or_default();
+        let count = of_body.entry(body).or_default();
         *count += 1;
         if *count == TOOLS_OF_A_BODY + 1 {
             validator.out.error_at(&path, format!("at most {TOOLS_OF_A_BODY} tools may suck at a body"));
@@ -57,9 +57,11 @@ pub(super) fn suction(scene_: &Scene, validator: &mut Validator) {
 }
 
 /// Refuses a mouth that the copies of a body would share, who have nothing in common.
-pub(super) fn of_copies(scene_: &Scene, validator: &mut Validator, path: &Path, body: Option<&String>, what: &str) {
-    let body = body.or(scene_.bodies.keys().next());
-    let found = body.and_then(|name| Some((name, scene_.bodies.get(name)?))).filter(|(_, body)| body.copies > 1);
+pub(super) fn of_copies(scene_: &Scene, validator: &mut Validator, path: &Path, body: &Option<String>, what: &str) {
+    let found = scene_
+        .body_meant(body)
+        .and_then(|name| Some((name, scene_.bodies.get(name)?)))
+        .filter(|(_, body)| body.copies > 1);
     if let Some((name, body)) = found {
         let message = format!(
             "what the tool {what} is shared by the {} copies of `{name}`: they would not do alike",

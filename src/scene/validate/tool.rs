@@ -191,7 +191,7 @@ fn contacts(scene_: &Scene, validator: &mut Validator) {
         named(scene_, validator, &path, tool);
         body_named(scene_, validator, &path, body.as_ref());
         select::validate(validator, &path.name("on"), on);
-        let count = of_body.entry(body.as_ref().or(scene_.bodies.keys().next())).or_default();
+        let count = of_body.entry(scene_.body_meant(body)).or_default();
         *count += 1;
         if *count == TOOLS_OF_A_BODY + 1 {
             let message = format!("a body may meet at most {} tools", TOOLS_OF_A_BODY);
@@ -202,11 +202,10 @@ fn contacts(scene_: &Scene, validator: &mut Validator) {
 
 /// Whether the same surfaces meet by an earlier contact: which of both would count?
 fn twice(scene_: &Scene, validator: &mut Validator, number: usize) {
-    let only = scene_.bodies.keys().next();
     let pair = |contact: &Contact| match contact {
         Contact::Tool { .. } => None,
         Contact::Between { bodies: (a, b), .. } => Some([a.min(b).clone(), a.max(b).clone()]),
-        Contact::Itself { body, .. } => body.as_ref().or(only).map(|body| [body.clone(), body.clone()]),
+        Contact::Itself { body, .. } => scene_.body_meant(body).map(|body| [body.clone(), body.clone()]),
     };
     let Some(here) = pair(&scene_.contacts[number]) else { return };
     let earlier = scene_.contacts[..number].iter().position(|contact| pair(contact).as_ref() == Some(&here));
@@ -241,7 +240,7 @@ pub(super) fn takes(scene_: &Scene, validator: &mut Validator, path: &Path, remo
         validator.out.error_at(path, message).note("leave one of both out, or give one of them more");
     }
     if rate.is_some() {
-        super::suction::of_copies(scene_, validator, path, removal.body.as_ref(), "takes from");
+        super::suction::of_copies(scene_, validator, path, &removal.body, "takes from");
     }
     if let Some(crumb) = crumb {
         validator.not_negative(&path.name("crumb"), *crumb, "m³");
@@ -286,7 +285,7 @@ fn taken_by(validator: &mut Validator, path: &Path, tool: &str, by: (Option<f64>
 fn takers(scene_: &Scene, validator: &mut Validator) {
     let mut of_body: BTreeMap<Option<&String>, usize> = BTreeMap::new();
     for (number, removal) in scene_.removal.iter().enumerate().filter(|(_, removal)| removal.when.tool().is_some()) {
-        let count = of_body.entry(removal.body.as_ref().or(scene_.bodies.keys().next())).or_default();
+        let count = of_body.entry(scene_.body_meant(&removal.body)).or_default();
         *count += 1;
         if *count == TOOLS_OF_A_BODY + 1 {
             let message = format!("at most {TOOLS_OF_A_BODY} tools may take elements of a body");
