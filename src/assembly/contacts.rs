@@ -23,6 +23,12 @@ pub(super) const FARTHEST: f64 = 0.5;
 /// measures across: who goes more than all of that could be beyond its middle, and would be let out on the other side.
 const SAFELY: f64 = 0.5;
 
+/// How far from a body a tool may stay in a whole run, in what the body measures across, before that is told of.
+const FAR: f64 = 100.0;
+
+/// How many instants of a run are looked at for where a tool is, and when jaws close.
+pub(super) const INSTANTS: u32 = 1000;
+
 /// Half of what a tool measures across, in edges, below which it may slip between nodes.
 const THINNEST: f64 = 2.0;
 
@@ -116,7 +122,9 @@ pub(super) fn spring_of(contact: &Contact, scene: &Scene) -> Option<ContactSprin
 
 /// Warns of a tool that is hardly thicker than the faces that it meets, whose edges are so long (m).
 pub(super) fn may_slip(tool: &str, body: &str, (geometry, edge): (&Geometry, f64), diagnostics: &mut Diagnostics) {
-    let Some(size) = geometry.smallest_radius().filter(|radius| *radius < THINNEST * edge) else { return };
+    // edges that are just as long as they may be are so to rounding
+    let is_thin = |radius: &f64| *radius < THINNEST * edge * (1.0 - 1e-6);
+    let Some(size) = geometry.smallest_radius().filter(is_thin) else { return };
     let message =
         format!("the tool `{tool}` may slip between nodes: it is hardly thicker than the faces that it meets");
     diagnostics
@@ -268,6 +276,8 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
                 continue;
             }
             jumps(&contact.tool, tool, "nodes that it meets there are pushed out by and by", diagnostics);
+            let duration = assembly.scene.scene.duration;
+            stays_far(contact, (name, body), (&motion, duration), diagnostics);
             let reach = contact.geometry.bounding_sphere().map_or(0.0, |(center, radius)| center.length() + radius);
             let speed = motion.fastest(reach);
             if speed * clock.time_step > FARTHEST * contacts.edge {
@@ -285,6 +295,31 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
         }
     }
     are_inside
+}
+
+/// Warns of a tool that stays so far from where a body begins as nobody means who counts in metres.
+fn stays_far(
+    contact: &ToolContact,
+    (name, body): (&str, &BodyParts),
+    (motion, duration): (&ToolMotion, f64),
+    diagnostics: &mut Diagnostics,
+) {
+    let Some((middle, radius)) = contact.geometry.bounding_sphere().filter(|_| !motion.is_led()) else { return };
+    let (low, high) = bounds(&body.placed.mesh.points);
+    let across = low.distance(high);
+    let instants = (0..=INSTANTS).map(|instant| duration * f64::from(instant) / f64::from(INSTANTS));
+    let of = |time: f64| motion.pose(time, |number| motion.curves[number].value(time)).place(middle);
+    let places = instants.chain(motion.path.iter().map(|key| key.0)).map(of);
+    let nearest = places.map(|place| place.distance(0.5 * (low + high))).fold(f64::INFINITY, f64::min);
+    let away = nearest - radius - 0.5 * across;
+    if away > FAR * across {
+        let message = format!(
+            "the tool `{}` comes no nearer than {away:.3e} m to where `{name}` is, which measures {across:.3e} m across",
+            contact.tool
+        );
+        let note = "lengths are metres: `scale` of a tool's mesh, or of a part, makes them of millimetres (1e-3)";
+        diagnostics.warn_at(format!("tools.\"{}\"", contact.tool).as_str(), message).note(note);
+    }
 }
 
 /// Warns of moves that happen all at once, and of what becomes of nodes then.

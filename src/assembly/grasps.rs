@@ -1,6 +1,6 @@
 //! Tools that take nodes along: selections become rows, and jaws that close on nothing are told.
 
-use super::contacts::{geometries, jumps, motion, reference};
+use super::contacts::{INSTANTS, geometries, jumps, motion, reference};
 use super::{Assembly, BodyParts};
 use crate::components::*;
 use crate::scene::diagnostic::Diagnostics;
@@ -90,9 +90,6 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
     }
 }
 
-/// How many instants of a scene are looked at for when jaws close.
-const INSTANTS: u32 = 1000;
-
 /// Whether there is something in the jaws when they close for the first time: at the start that is known; later the
 /// body may have gone elsewhere, and it is a warning.
 fn in_jaws(
@@ -109,9 +106,8 @@ fn in_jaws(
     };
     let (Some(reach), Some((word, curve))) = (grasp.reach, attachment.curve()) else { return };
     // where hands and programs will be nobody knows
-    let led = |curve: &Curve| matches!(curve, Curve::Input { .. });
     let motion = motion(tool);
-    if led(curve) || motion.hand.is_some() || motion.curves.iter().any(led) {
+    if matches!(curve, Curve::Input { .. }) || motion.is_led() {
         return;
     }
     let instants = (0..=INSTANTS).map(|instant| scene.duration * f64::from(instant) / f64::from(INSTANTS));

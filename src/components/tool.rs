@@ -110,6 +110,11 @@ impl ToolMotion {
         Pose { rotation: DMat3::from_quat(turn), at }
     }
 
+    /// Whether hands and programs move it: then nobody knows where it will be.
+    pub fn is_led(&self) -> bool {
+        self.hand.is_some() || self.curves.iter().any(|curve| matches!(curve, Curve::Input { .. }))
+    }
+
     /// How near its origin may come to a point (m), at least, as far as the scene tells.
     fn nearest(&self, point: DVec3) -> f64 {
         let places: Vec<DVec3> = self.path.iter().map(|key| key.1).collect();

@@ -125,7 +125,11 @@ impl Observer {
         let mut probes: Vec<ProbeTrack> = world
             .query::<(Entity, &Label, &Probe)>()
             .iter(world)
-            .map(|(entity, label, probe)| ProbeTrack { entity, name: label.0.clone(), track: Track::new(probe.every) })
+            .map(|(entity, label, probe)| {
+                // place, and then rotation
+                let turn = matches!(probe.what, crate::scene::schema::Quantity::ToolPose { .. }).then_some(3);
+                ProbeTrack { entity, name: label.0.clone(), track: Track::new(probe.every).with_turn(turn) }
+            })
             .collect();
         probes.sort_by(|a, b| a.name.cmp(&b.name));
         self.probes = probes;

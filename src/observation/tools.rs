@@ -1,5 +1,6 @@
 //! What tools feel.
 
+use super::track::{degrees, shorter};
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::Error;
@@ -137,7 +138,6 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
 /// and how fast it turns (rad/s) in the middle of the last step.
 pub fn way_of(world: &mut World, tool: &str, of_velocity: bool) -> [DVec3; 2] {
     let clock = *world.resource::<Clock>();
-    let degrees = |turn: DQuat| turn.to_scaled_axis() * (180.0 / std::f64::consts::PI);
     if of_velocity && let Some((velocity, spin)) = super::free_tools::velocity_of(world, tool) {
         return [velocity, spin];
     }
@@ -164,7 +164,7 @@ pub fn way_of(world: &mut World, tool: &str, of_velocity: bool) -> [DVec3; 2] {
     }
     let Some(earlier) = pose_at(before) else { return [DVec3::ZERO; 2] };
     let turned = turn * DQuat::from_mat3(&earlier.rotation).conjugate();
-    [(now.at - earlier.at) * rate, turned.to_scaled_axis() * rate]
+    [(now.at - earlier.at) * rate, shorter(turned).to_scaled_axis() * rate]
 }
 
 /// The slot of a pose of a guided tool, wherever it is used, and the point from which that is counted (m).

@@ -5,6 +5,7 @@
 //! the end, whether that is asked for or not.
 
 use crate::components::Cadence;
+use glam::{DQuat, DVec3};
 
 /// Rows of a table: time (s) and values.
 pub type Row = (f64, Vec<f64>);
@@ -16,12 +17,19 @@ pub struct Track {
     pub every: Cadence,
     /// Step, time and values at the end of the last step that may be needed for an interpolation.
     before: Option<(u64, Row)>,
+    /// Where among the values three are a rotation, axis times angle (degrees).
+    turn: Option<usize>,
 }
 
 impl Track {
     /// Observed so often.
     pub fn new(every: Cadence) -> Self {
-        Self { every, before: None }
+        Self { every, ..Self::default() }
+    }
+
+    /// The same, with three values that are a rotation, axis times angle (degrees), from this place on if there is one.
+    pub fn with_turn(self, turn: Option<usize>) -> Self {
+        Self { turn, ..self }
     }
 
     /// The next step, after `step`, at whose end it has to be observed: that of a time that is asked for, or the one
@@ -58,8 +66,7 @@ impl Track {
             (_, Some(asked)) if overshoot == 0.0 => rows.push((asked, values.clone())),
             (Some((at, (from, before))), Some(asked)) if at + 1 == step && *from <= asked && asked < *time => {
                 let share = (asked - from) / (time - from);
-                let between = before.iter().zip(values).map(|(a, b)| a + share * (b - a)).collect();
-                rows.push((asked, between));
+                rows.push((asked, self.between([before, values], share)));
             }
             // nothing is known of the beginning of the step: the time is that of its end
             _ if due => rows.push((*time, values.clone())),
@@ -70,6 +77,32 @@ impl Track {
         }
         rows
     }
+
+    /// What is a share of the way from some values to others. Rotations go the shorter way round, as a step does: their
+    /// numbers jump at half a turn.
+    fn between(&self, [before, after]: [&[f64]; 2], share: f64) -> Vec<f64> {
+        let mut between: Vec<f64> = before.iter().zip(after).map(|(a, b)| a + share * (b - a)).collect();
+        if let Some(turn) = self.turn.map(|at| at..at + 3).filter(|turn| turn.end <= between.len()) {
+            let [from, to] = [before, after].map(|values| turned(DVec3::from_slice(&values[turn.clone()])));
+            between[turn].copy_from_slice(&degrees(from.slerp(to, share)).to_array());
+        }
+        between
+    }
+}
+
+/// A rotation as axis times angle (degrees), of half a turn at most.
+pub(super) fn degrees(turn: DQuat) -> DVec3 {
+    shorter(turn).to_scaled_axis().map(f64::to_degrees)
+}
+
+/// A rotation by an axis times an angle (degrees).
+fn turned(degrees: DVec3) -> DQuat {
+    DQuat::from_scaled_axis(degrees.map(f64::to_radians))
+}
+
+/// The same rotation, by half a turn at most.
+pub(super) fn shorter(turn: DQuat) -> DQuat {
+    if turn.w < 0.0 { -turn } else { turn }
 }
 
 /// When all tables and frames are looked through for what is due.

@@ -25,6 +25,8 @@ pub const PART_DEPTH: usize = 8;
 pub const SYSTEMS: usize = 100;
 /// Points of a table, places of a tool's path; a longer signal is thinned out before.
 pub const TABLE_POINTS: usize = 100_000;
+/// Whole turns of a tool on its path, all legs together.
+pub const MOST_TURNS: f64 = 1000.0;
 /// Terms of each of a material's series (viscosity, families of fibres); moves of a tool.
 pub const TERMS: usize = 100;
 /// Bytes of a name in UTF-8, of a body, material, set or probe: files are named after some, and no file name may have

@@ -152,17 +152,17 @@ fn bodies(world: &mut World) -> Vec<(Entity, Label)> {
     query.iter(world).map(|(entity, label)| (entity, label.clone())).collect()
 }
 
-/// Takes over how a body touches others at rest, if that is by springs: the kinematic law begins anew. Where the motion
+/// Takes over how a body touches tools at rest, and if that is by springs others: the kinematic law between bodies
+/// begins anew. Where the motion
 /// may lose elements and the search for rest may not, rows have another order, and there is room for what may come to
 /// the surface.
 fn take_touch(world: &mut World, body: Entity, other: &World, from: Entity) {
     let rows = |world: &World, entity| Some(world.get::<Authoring>(entity)?.node_rows.clone());
     let (Some(to_rows), Some(from_rows)) = (rows(world, body), rows(other, from)) else { return };
-    if other.resource::<Clock>().springs.is_none() {
-        return;
-    }
+    let springs = other.resource::<Clock>().springs.is_some();
     let number = world.get::<Displacement>(body).map_or(0, |u| u.bytes().len() / u.len().max(1));
-    for column in all_columns().iter().filter(|column| is_touch(column)) {
+    for column in all_columns().iter().filter(|column| is_touch(column) && (springs || column.name == ToolTouch::NAME))
+    {
         let (Some(source), Some(target)) = ((column.bytes)(other, from), (column.bytes)(world, body)) else { continue };
         let mut taken = target.to_vec();
         let places = match column.name {

@@ -7,13 +7,17 @@ use crate::scene::schema::{InitialState, Scene, Solver};
 use crate::tools::Geometry;
 use bevy_ecs::prelude::*;
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::hash::Hasher;
 use twox_hash::XxHash64;
 
 /// Hashes of a simulation's parts as texts, by the part's name in scenes. Titles, probes, outputs, pictures and guards
 /// are no parts: they may differ.
 pub type Identity = BTreeMap<String, String>;
+
+const MESHES: &str = "meshes (with their named sets and fields)";
+const TOOLS: &str = "tools, contacts and attachments";
+const TIME_STEP: &str = "time step (from `duration` and `integration`)";
 
 /// The identity of a scene and the world that was made of it, before its first step.
 pub fn identity(scene: &Scene, world: &mut World) -> Identity {
@@ -66,14 +70,14 @@ pub fn identity(scene: &Scene, world: &mut World) -> Identity {
         for grasps in world.query::<&Grasps>().iter(world) {
             grasps.grasps.iter().for_each(|grasp| of_tool(&grasp.tool.geometry));
         }
-        add("tools, contacts and attachments", tools.finish());
+        add(TOOLS, tools.finish());
     }
     add("removal", of_text(&scene.removal));
     add("integration", of_text(&scene.integration));
     add("schedule", of_text(&scene.schedule));
     add("parameters", of_text(&scene.parameters));
     // a longer scene has the same steps where `step` is named; else they fit its duration
-    add("time step (from `duration` and `integration`)", world.resource::<Clock>().time_step.to_bits());
+    add(TIME_STEP, world.resource::<Clock>().time_step.to_bits());
     let (mut meshes, mut laws) = (XxHash64::default(), XxHash64::default());
     let columns = all_columns();
     for (_, place) in super::state_columns::places(world) {
@@ -101,7 +105,7 @@ pub fn identity(scene: &Scene, world: &mut World) -> Identity {
         }
     }
     meshes.write_u64(sets_in_use(world));
-    add("meshes (with their named sets and fields)", meshes.finish());
+    add(MESHES, meshes.finish());
     laws.write_u64(of_text(&scene.materials));
     add("materials", laws.finish());
     parts
@@ -154,8 +158,13 @@ fn of_text<T: Serialize>(part: &T) -> u64 {
     XxHash64::oneshot(0, ron::to_string(part).unwrap_or_default().as_bytes())
 }
 
-/// The parts in which two identities differ.
+/// What is made of meshes knows of these, too.
+const OF_MESHES: [&str; 6] = ["materials", "constraints", "loads", "systems", TOOLS, "removal"];
+
+/// The parts in which two identities differ; meshes only where nothing does that they know of.
 pub fn differences(a: &Identity, b: &Identity) -> Vec<String> {
-    let names: std::collections::BTreeSet<&String> = a.keys().chain(b.keys()).collect();
-    names.into_iter().filter(|name| a.get(*name) != b.get(*name)).cloned().collect()
+    let differs = |name: &str| a.get(name) != b.get(name);
+    let follows = |name: &str| name == MESHES && OF_MESHES.iter().any(|of| differs(of));
+    let names: BTreeSet<&String> = a.keys().chain(b.keys()).collect();
+    names.into_iter().filter(|name| differs(name) && !follows(name)).cloned().collect()
 }

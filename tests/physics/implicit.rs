@@ -274,6 +274,43 @@ fn prescribed_motion_goes_where_it_should_and_gives_its_work() {
     assert!(e.strain > 1e-3 && e.scheme_loss.unwrap().abs() < 0.05 * e.strain, "{e:?}");
 }
 
+/// Of a body that is moved evenly no forces are left to compare a residual with: what is moved as told leads there.
+#[test]
+fn a_body_that_is_moved_evenly_goes_along() {
+    for (law, step) in [("corotational", 0.005), ("neo_hookean", 0.02), ("neo_hookean", 0.001)] {
+        for curve in ["Ramp(end: 0.3)", "Ramp(end: 0.05)", "Smooth(end: 0.3)"] {
+            let mut simulation = start(&format!(
+                "(duration: 0.3, solver: Implicit(step: {step}),
+                bodies: {{\"b\": (mesh: Box(size: (0.02, 0.02, 0.01), cells: (2, 2, 1), elements: Hex8MeanDilatation), material: \"m\")}},
+                materials: {{\"m\": (density: 1000, {law}: Young(young: 5e4, poisson: 0.3), stiffness_damping: 1e-3)}},
+                constraints: [Prescribed(on: Set(\"z0\"), displacement: (0.03, 0, 0), curve: {curve})])"
+            ));
+            simulation.finish().unwrap();
+            let far =
+                simulation.displacements("b").unwrap().iter().map(|u| u.distance(0.03 * DVec3::X)).fold(0.0, f64::max);
+            near(&format!("{law}, {step} s, {curve}"), far, 0.0, 0.03, 2e-3);
+            let counts = simulation.implicit_steps().unwrap();
+            assert_eq!(counts.unsolved, 0, "{counts:?}");
+        }
+    }
+}
+
+/// A block that sticks to a belt by springs far stiffer than itself: iterations that leave many times what they began
+/// with have found nothing.
+#[test]
+fn a_step_whose_iterations_lead_away_ends_the_run() {
+    let mut simulation = start(
+        "(duration: 0.3, solver: Implicit(step: 0.02),
+        bodies: {\"b\": (mesh: Box(size: (0.02, 0.02, 0.01), cells: (4, 4, 2), elements: Hex8), material: \"m\")},
+        materials: {\"m\": (density: 1000, neo_hookean: Young(young: 5e4, poisson: 0.3), stiffness_damping: 1e-3)},
+        loads: [Gravity(acceleration: (0, 0, -9.81))],
+        tools: {\"k\": (shape: Plane(), path: [(t: 0, at: (0, 0, 0)), (t: 0.3, at: (0.03, 0, 0))])},
+        contacts: [Tool(tool: \"k\", friction: 0.8, law: Penalty(share: 30))])",
+    );
+    let said = simulation.finish().unwrap_err().to_string();
+    assert!(said.contains("times the residual of their beginning is left"), "{said}");
+}
+
 /// What is told of a scene with a solver and something else in it.
 pub fn refused(solver: &str, more: &str) -> String {
     let text = format!(

@@ -206,3 +206,26 @@ fn what_has_no_meaning_beside_it_is_told() {
     assert!(told(&free).contains("nothing holds the body"));
     assert!(with("start: ", "analysis: Static(at: -1), start: ").contains("0 or above"));
 }
+
+/// A ball in a block at t = 0: what it feels there is what holds the block, and nobody says that nothing acts.
+#[test]
+fn what_a_tool_feels_at_rest_stands_in_the_first_row() {
+    let text = "(duration: 0.01, start: Equilibrium(),
+        bodies: {\"b\": (mesh: Box(size: (0.03, 0.03, 0.02), cells: (5, 5, 3), elements: Hex8), material: \"m\")},
+        materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.4), damping: 20)},
+        constraints: [Fixed(on: Set(\"z0\"))],
+        tools: {\"ball\": (shape: Sphere(radius: 0.012), at: (0.015, 0.015, 0.031))}, contacts: [Tool(tool: \"ball\")])";
+    let file = scene_of(text, Path::new("."));
+    let mut found = file.diagnostics();
+    sinew::scene::validate(&file, &mut found);
+    assert_eq!(found.render(false), "");
+    for run in cpu_and_long_gpu() {
+        let mut simulation = run.start(text);
+        let first = simulation.tool("ball").unwrap();
+        simulation.advance(2).unwrap();
+        let then = simulation.tool("ball").unwrap();
+        assert!(first.force.z > 5e-3 && first.nodes == then.nodes, "{}: {first:?} {then:?}", run.name);
+        let off = first.force.distance(then.force);
+        near(run.name, off, 0.0, then.force.length(), 1e-3);
+    }
+}

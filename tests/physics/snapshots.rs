@@ -157,6 +157,13 @@ fn foreign_snapshots_are_refused_with_the_reason() {
         assert!(text.contains(from));
         let said = refused(&mut run.start(&text.replace(from, to)));
         assert!(said.contains("of another simulation") && said.contains(part), "{from} to {to}: {said}");
+        // and no part that is as it was
+        let named = ["materials", "loads", "constraints", "meshes", "removal"].map(|name| said.contains(name));
+        assert_eq!(
+            named,
+            ["materials", "loads", "constraints", "meshes", "removal"].map(|name| part.contains(name)),
+            "{said}"
+        );
     }
     // what does not move anything may differ
     let further =

@@ -107,6 +107,8 @@ fn what_is_wrong_with_a_suture_or_a_tie_is_told_where_it_stands() {
     assert!(found.contains(wanted), "{found}");
     let found = told(&suture("(0.08, 0.02, 0.1)", ", strength: 1"), "analysis: Static(),");
     assert!(found.contains("5: warning: nothing breaks in a static analysis"), "{found}");
+    let found = told(&suture("(0.08, 0.02, 0.1)", ", strength: 1"), "start: Equilibrium(),");
+    assert!(found.contains("5: warning: nothing breaks on the way to the equilibrium of the start"), "{found}");
 }
 
 #[test]

@@ -18,6 +18,7 @@ mod parts;
 mod per_copy;
 mod set;
 mod several;
+mod suction;
 mod surfaces;
 mod tools;
 mod values;

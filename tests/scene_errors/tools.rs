@@ -6,7 +6,7 @@ use crate::complaints::told_of;
 const OPEN: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n";
 
 /// What is said of a tool and its contact, each complaint in one line without its place in the line.
-fn told(tool: &str, contact: &str, more: &str) -> String {
+pub fn told(tool: &str, contact: &str, more: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("open.obj"), OPEN).unwrap();
     let text = format!(
@@ -19,8 +19,8 @@ contacts: [{contact}])"
     told_of(&text, folder.path())
 }
 
-const ROD: &str = "(shape: Capsule(length: 0.2, radius: 0.06), at: (0.05, 0.05, 0.11))";
-const TOUCH: &str = "Tool(tool: \"rod\")";
+pub const ROD: &str = "(shape: Capsule(length: 0.2, radius: 0.06), at: (0.05, 0.05, 0.11))";
+pub const TOUCH: &str = "Tool(tool: \"rod\")";
 
 #[test]
 fn a_good_tool_has_no_complaints() {
@@ -193,62 +193,6 @@ fn probes_of_tools_name_one_that_is_there_and_no_nodes() {
 }
 
 #[test]
-fn what_is_wrong_with_what_a_tool_takes_and_sucks_is_told() {
-    let takes = |fields: &str| format!("removal: [(when: InTool({fields}))],");
-    let sucks = |fields: &str| format!("suction: [({fields})],");
-    let good = "tool: \"rod\", reach: 0.1, rate: 1e-6";
-    let mouth = "tool: \"rod\", reach: 0.1, pressure: 100, bore: 0.01";
-    let passes = |threshold: &str| takes(&format!("tool: \"rod\", reach: 0.1, threshold: {threshold}"));
-    for good in [takes(good), takes(&format!("{good}, crumb: 0")), passes("StretchAbove(1.2)"), sucks(mouth)] {
-        assert_eq!(told(ROD, TOUCH, &good), "");
-        // who takes or sucks need not touch
-        assert_eq!(told(ROD, "", &good), "");
-    }
-    let cases = [
-        (takes("tool: \"ro\", reach: 0.1, rate: 1"), "3: error: there is no tool `ro` | did you mean `rod`?"),
-        (takes("tool: \"rod\", reach: 0, rate: 1"), "3: error: `reach` must be above 0, found 0 m"),
-        (takes("tool: \"rod\", reach: 1, rate: -1"), "3: error: `rate` must be above 0, found -1 m³/s"),
-        (takes(&format!("{good}, bore: 0")), "3: error: `bore` must be above 0, found 0 m"),
-        (takes(&format!("{good}, burst: 0")), "3: error: `burst` must be between 1 and 1024, found 0"),
-        (takes(&format!("{good}, curve: Smooth(start: 1, end: 0)")), "3: error: "),
-        (takes("tool: \"rod\", rate: 1"), "`reach`"),
-        (takes(&format!("{good}, crumb: -1")), "3: error: `crumb` must be 0 or above, found -1 m³"),
-        (
-            takes("tool: \"rod\", reach: 1"),
-            "3: error: the tool `rod` takes elements by nothing | either `rate`, the volume in a second (m³/s), or",
-        ),
-        (
-            takes(&format!("{good}, threshold: StretchAbove(2)")),
-            "3: error: a `threshold` beside a `rate` | either `rate`",
-        ),
-        (passes("StretchAbove(-1)"), "3: error: `StretchAbove` must be above 0, found -1"),
-        (passes("StretchAbove(0.5)"), "3: warning: `StretchAbove` of 0.5 holds at rest"),
-        (passes("EnergyDensityAbove(-1)"), "3: error: `EnergyDensityAbove` must be 0 or above, found -1"),
-        (passes("Above(1)"), "`threshold` cannot be `Above`"),
-        (sucks("tool: \"ro\", reach: 0.1, pressure: 1"), "3: error: there is no tool `ro` | did you mean `rod`?"),
-        (sucks("tool: \"rod\", reach: 0.1, pressure: 1"), "3: error: the tool `rod` is no tube: where is its mouth?"),
-        (
-            sucks("tool: \"rod\", reach: 0.1, pressure: -1, bore: 1"),
-            "3: error: `pressure` must be above 0, found -1 Pa",
-        ),
-        (sucks(&format!("{mouth}, delay: -1")), "3: error: `delay` must be 0 or above, found -1 s"),
-        (
-            sucks("tool: \"rod\", reach: 0.1, pressure: 4e3, bore: 0.01"),
-            "3: warning: the suction of 4.000e3 Pa is more than",
-        ),
-        (format!("analysis: Static(), {}", sucks(mouth)), "3: error: a static analysis cannot suck"),
-        (format!("analysis: Static(), {}", takes(good)), "3: error: a static analysis cannot remove elements"),
-        (format!("removal: [{}],", format!("(when: InTool({good})),").repeat(9)), "at most 8 tools may take elements"),
-        (format!("suction: [{}],", format!("({mouth}),").repeat(9)), "at most 8 tools may suck at a body"),
-    ];
-    for (more, expected) in cases {
-        let found = told(ROD, TOUCH, &more);
-        println!("{found}");
-        assert!(found.contains(expected), "{more}:\n{found}\nexpected\n{expected}");
-    }
-}
-
-#[test]
 fn what_is_wrong_with_a_free_tool_is_told_with_what_is_allowed() {
     let ball = |rest: &str| format!("(shape: Sphere(radius: 0.06), at: (0.05, 0.05, 0.17), {rest})");
     let either = "a free tool has either a `mass` (kg) or a `density` (kg/m³)";
@@ -340,61 +284,37 @@ fn what_can_do_nothing_is_told() {
 }
 
 #[test]
-fn what_sucks_or_takes_twice_is_told() {
-    let entry = "(tool: \"rod\", pressure: 100, bore: 0.01, reach: 0.02)";
-    let said = told(ROD, TOUCH, &format!("suction: [{entry}, {entry}],"));
-    assert!(said.contains("error: `rod` sucks at this body by suction[0] already | leave one of both out"), "{said}");
-    let entry = "(when: InTool(tool: \"rod\", reach: 0.02, rate: 1e-6))";
-    let said = told(ROD, TOUCH, &format!("removal: [{entry}, {entry}],"));
-    assert!(
-        said.contains("error: `rod` takes the same elements by two entries: they would go twice as fast"),
-        "{said}"
-    );
-    let other =
-        "(on: Box(min: (0, 0, 0), max: (0.05, 0.1, 0.1)), when: InTool(tool: \"rod\", reach: 0.02, rate: 1e-6))";
-    assert_eq!(told(ROD, TOUCH, &format!("removal: [{entry}, {other}],")), "");
-}
-
-#[test]
-fn what_copies_would_share_is_refused() {
-    let of = |entry: &str| {
-        let folder = tempfile::tempdir().unwrap();
-        let body = "mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4)), material: \"m\", copies: 2";
-        let text = format!(
-            "(duration: 0.1, bodies: {{\"b\": ({body})}},
-            materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
-            constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))], {entry},
-            tools: {{\"rod\": (shape: Tube(length: 0.1, inner: 0.02, outer: 0.03), at: (0.05, 0.05, 0.105))}})"
-        );
-        told_of(&text, folder.path())
-    };
-    let said = of("suction: [(tool: \"rod\", pressure: 100, reach: 0.02)]");
-    assert!(said.contains("error: what the tool sucks at is shared by the 2 copies of `b`"), "{said}");
-    let taken = |by: &str| of(&format!("removal: [(when: InTool(tool: \"rod\", reach: 0.02, {by}))]"));
-    let said = taken("rate: 1e-6");
-    assert!(said.contains("error: what the tool takes from is shared by the 2 copies of `b`"), "{said}");
-    assert_eq!(taken("threshold: StretchAbove(1.5)"), "");
-}
-
-#[test]
-fn suction_that_has_begun_before_the_first_step_is_refused() {
-    let sucks = |curve: &str| {
-        let entry = format!("(tool: \"rod\", pressure: 100, bore: 0.01, reach: 0.02{curve})");
-        told(
-            ROD,
-            TOUCH,
-            &format!("start: Equilibrium(), loads: [Gravity(acceleration: (0, 0, -9.81))], suction: [{entry}],"),
-        )
-    };
-    let said = sucks("");
-    assert!(said.contains("error: it sucks at t = 0, and `start: Equilibrium()` knows nothing of suction"), "{said}");
-    assert_eq!(sucks(", curve: Smooth(end: 0.1)"), "");
-}
-
-#[test]
 fn a_law_is_not_asked_for_where_none_is_allowed() {
     let free = "(shape: Sphere(radius: 0.06), at: (0.05, 0.05, 0.17), free: (mass: 1))";
     let said = told(free, TOUCH, "solver: Implicit(),");
     assert!(said.contains("implicit steps do not move free tools"), "{said}");
     assert!(!said.contains("Penalty"), "{said}");
+}
+
+#[test]
+fn a_tool_in_millimetres_is_told_of() {
+    let said = told("(shape: Capsule(length: 200, radius: 60), at: (50, 50, 110))", TOUCH, "");
+    let expected = "warning: the tool `rod` comes no nearer than 1.2";
+    assert!(said.contains(expected) && said.contains("m to where `b` is") && said.contains("metres"), "{said}");
+    let far = "shape: Sphere(radius: 0.06), at: (0.05, 0.05, 18)";
+    assert!(told(&format!("({far})"), TOUCH, "").contains("comes no nearer than"));
+    // it comes for a moment, or a program may lead it
+    let comes = "moves: [(displacement: (0, 0, -2), curve: Table([(0.04, 0), (0.05, 1), (0.06, 0)]))]";
+    assert_eq!(told(&format!("({far}, {comes})"), TOUCH, "integration: (step: 1e-5),"), "");
+    let led = "moves: [(displacement: (0, 0, -2), curve: Input(name: \"way\", rate: 1))]";
+    assert_eq!(told(&format!("({far}, {led})"), TOUCH, ""), "");
+}
+
+#[test]
+fn a_path_that_turns_without_end_is_refused() {
+    let rod = |degrees: f64| {
+        format!(
+            "(shape: Capsule(length: 0.2, radius: 0.06), path: [(t: 0, at: (0.05, 0.05, 0.11)),
+                (t: 0.1, at: (0.05, 0.05, 0.11), rotation: (0, 0, {degrees}))])"
+        )
+    };
+    let said = told(&rod(4e5), TOUCH, "");
+    assert!(said.contains("error: the tool turns 1111 times on its way: 1000 are allowed"), "{said}");
+    assert_eq!(told(&rod(360.0), TOUCH, "integration: (step: 1e-5),"), "");
+    assert!(told(&rod(1e300), TOUCH, "").contains("times on its way"));
 }

@@ -213,7 +213,16 @@ fn guards(summary: &Summary, page: &mut Page) {
     if seen.checks > 0 {
         page.row("guards", balance(seen));
     }
-    page.rows("warnings", seen.warnings.iter().map(|w| format!("from t = {} s: {}", digits(w.time), w.message)));
+    page.rows("warnings", warnings(seen));
+}
+
+fn warnings(seen: &GuardMemory) -> impl Iterator<Item = String> {
+    seen.warnings.iter().map(|w| format!("from t = {} s: {}", digits(w.time), w.message))
+}
+
+/// What was warned of in a run whose report is not wanted.
+pub fn warnings_alone(summary: &Summary) -> String {
+    warnings(&summary.guards).map(|warning| format!("warning: {warning}\n")).collect()
 }
 
 fn balance(seen: &GuardMemory) -> String {

@@ -45,6 +45,7 @@ pub fn command(arguments: &RunArguments) -> Outcome {
     }
     let (summary, ended) = outcome?;
     match arguments.json {
+        false if terminal::is_quiet() => terminal::aside(&report::warnings_alone(&summary)),
         false => terminal::say(&report::text(&summary, &scene, &folder, Paint::of_stdout()))?,
         true => {
             let text = summary::text(&summary).map_err(|reason| Failure::Silent(std::io::Error::other(reason)))?;

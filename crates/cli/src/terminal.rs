@@ -26,6 +26,11 @@ fn speaks(voice: Voice) -> bool {
     VOICE.load(Ordering::Relaxed) >= voice as u8
 }
 
+/// Whether reports are not wanted.
+pub fn is_quiet() -> bool {
+    !speaks(Voice::Usual)
+}
+
 /// Whether details are wanted.
 pub fn is_verbose() -> bool {
     speaks(Voice::Verbose)

@@ -211,6 +211,10 @@ impl Placement {
 
     pub fn tool(&self, tool: &mut Tool) {
         // a hand counts from where its tool is
+        if self.turn.is_some() && !tool.path.is_empty() {
+            // turned, they would not tell any more how often it turns between them
+            tool.path = tool.places();
+        }
         let Tool { shape, mesh, rounding, at, rotation, path, moves, pivot, port: _, free } = tool;
         if let Some(shape) = shape.as_mut().filter(|_| self.scale != 1.0) {
             *shape = shape.scaled(self.scale);
@@ -224,9 +228,14 @@ impl Placement {
             self.point(at.get_or_insert_default());
             self.pose(rotation.get_or_insert_default());
         }
+        let mut before = None;
         for place in path {
             self.point(&mut place.at);
             self.pose(&mut place.rotation);
+            if let Some(before) = before.filter(|_| self.turn.is_some()) {
+                place.rotation = nearest_turn(place.rotation, before);
+            }
+            before = Some(place.rotation);
         }
         pivot.iter_mut().for_each(|pivot| self.point(pivot));
         if let Some(Free { mass: _, density: _, inertia: _, velocity, spin, damping: _ }) = free {
@@ -317,4 +326,10 @@ impl Placement {
             | Quantity::ToolVelocity { .. } => {}
         }
     }
+}
+
+/// The same rotation, axis times angle (degrees), with as many whole turns as bring it nearest to one before.
+fn nearest_turn(rotation: DVec3, before: DVec3) -> DVec3 {
+    let axis = rotation.try_normalize().unwrap_or_else(|| before.normalize_or_zero());
+    rotation + axis * (360.0 * ((before - rotation).dot(axis) / 360.0).round())
 }

@@ -1,6 +1,7 @@
 //! Rigid tools, and what they touch.
 
 use super::{Curve, Select};
+use crate::scene::limits::MOST_TURNS;
 use crate::tools::Shape;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -24,7 +25,8 @@ pub struct Tool {
     /// How it is turned: axis times angle (degrees). Not with a `path`.
     #[serde(default)]
     pub rotation: Option<DVec3>,
-    /// Places on its way, in the order of time; straight between them, at rest before the first and after the last.
+    /// Places on its way, in the order of time; straight and evenly turned between them, at rest before the first and
+    /// after the last. About the axis of two of them it turns as far as they say, else by the shorter way round.
     #[serde(default)]
     pub path: Vec<ToolPlace>,
     /// What is added to that, each by a curve of its own.
@@ -318,12 +320,31 @@ fn surface() -> Select {
 }
 
 impl Tool {
-    /// Its places, in the order of time: that of `at` where it has no path.
+    /// Its places, in the order of time: that of `at` where it has no path. Between them it turns by the shorter way
+    /// round: where it is to turn about one axis by more than a quarter, there are some more.
     pub fn places(&self) -> Vec<ToolPlace> {
-        if !self.path.is_empty() {
-            return self.path.clone();
-        }
-        let (at, rotation) = (self.at.unwrap_or_default(), self.rotation.unwrap_or_default());
-        vec![ToolPlace { t: 0.0, at, rotation }]
+        let Some(first) = self.path.first() else {
+            let (at, rotation) = (self.at.unwrap_or_default(), self.rotation.unwrap_or_default());
+            return vec![ToolPlace { t: 0.0, at, rotation }];
+        };
+        let legs = self.path.windows(2).flat_map(|pair| pair[1].since(pair[0]));
+        std::iter::once(*first).chain(legs).collect()
+    }
+}
+
+impl ToolPlace {
+    /// The places after another, to this one, a quarter of a turn at most from each other about the axis of both; this
+    /// one alone where they have none in common.
+    fn since(self, before: Self) -> impl Iterator<Item = Self> {
+        let [from, to] = [before.rotation, self.rotation];
+        let is_one_axis = from.cross(to).length() <= 1e-9 * from.length() * to.length();
+        let quarters = if is_one_axis { (from.distance(to) / 90.0).ceil() } else { 1.0 };
+        let parts = quarters.clamp(1.0, 4.0 * MOST_TURNS) as u32;
+        (1..=parts).map(move |part| {
+            let share = f64::from(part) / f64::from(parts);
+            let t = before.t + share * (self.t - before.t);
+            let between = Self { t, at: before.at.lerp(self.at, share), rotation: from.lerp(to, share) };
+            if part == parts { self } else { between }
+        })
     }
 }

@@ -136,7 +136,9 @@ fn start(scene_: &Scene, validator: &mut Validator) {
     }
     let curves = scene_.loads.iter().map(Load::curve).chain(scene_.constraints.iter().filter_map(Constraint::curve));
     let curves = curves.chain(scene_.systems.values().map(|system| &system.curve));
-    if curves.map(|curve| curve.value(0.0)).all(|factor| factor == 0.0) {
+    // tools that press and sutures that draw do so where they are at t = 0
+    let meets = !scene_.contacts.is_empty() || !scene_.attachments.is_empty();
+    if !meets && curves.map(|curve| curve.value(0.0)).all(|factor| factor == 0.0) {
         validator.out.warn_at(&path, "nothing acts at t = 0: bodies start undeformed").note(
             "curves count as they stand at 0: a ramp that begins there is 0; a load without `curve` acts in full",
         );

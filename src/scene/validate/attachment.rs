@@ -4,7 +4,7 @@ use super::names::body_named;
 use super::tool::named;
 use super::{Validator, scene, select};
 use crate::scene::limits::{MOST_SWEEPS, TOOLS_OF_A_BODY};
-use crate::scene::schema::{Attachment, Point, Quantity, Scene};
+use crate::scene::schema::{Attachment, InitialState, Point, Quantity, Scene};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use std::collections::{BTreeMap, BTreeSet};
@@ -88,6 +88,11 @@ fn static_strength(scene_: &Scene, validator: &mut Validator, path: &Path, field
             .out
             .warn_at(path.name(field), "nothing breaks in a static analysis: it holds whatever it bears")
             .note("what breaks depends on the way there, which a transient analysis goes");
+    } else if there && matches!(scene_.start, InitialState::Equilibrium(_)) {
+        validator
+            .out
+            .warn_at(path.name(field), "nothing breaks on the way to the equilibrium of the start")
+            .note("what bears more there than it can breaks in the first step");
     }
 }
 

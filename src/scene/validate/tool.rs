@@ -3,7 +3,7 @@
 use super::geometry::{TOOLS, named_file};
 use super::names::body_named;
 use super::{Validator, scene, select, show};
-use crate::scene::limits::{MOST_BURST, MOST_SWEEPS, TOOLS_OF_A_BODY};
+use crate::scene::limits::{MOST_BURST, MOST_SWEEPS, MOST_TURNS, TOOLS_OF_A_BODY};
 use crate::scene::load::SceneFile;
 use crate::scene::schema::{Contact, ContactLaw, Follow, Port, Removal, Scene, Threshold, Tool, When};
 use crate::scene::suggest::choice;
@@ -96,7 +96,14 @@ fn tool(validator: &mut Validator, path: &Path, tool: &Tool) {
             validator.out.error_at(path, message).notes(jumps.then_some(note));
         }
     }
-    if let Some(pivot_) = tool.pivot {
+    let turns = tool.path.windows(2).map(|pair| pair[0].rotation.distance(pair[1].rotation)).sum::<f64>() / 360.0;
+    if turns > MOST_TURNS {
+        let message = format!("the tool turns {turns:.0} times on its way: {MOST_TURNS} are allowed");
+        validator
+            .out
+            .error_at(path.name("path"), message)
+            .note("`moves` with a `curve` may turn it as often as it is to");
+    } else if let Some(pivot_) = tool.pivot {
         pivot(validator, &path.name("pivot"), tool, pivot_);
     }
     for (number, part) in tool.moves.iter().enumerate() {

@@ -36,6 +36,10 @@ const MOST_MOVES: u32 = 20;
 const ITERATION: u64 = 2;
 /// What a solve that looks for a motion without resistance leaves of the residual.
 const THOROUGH: f64 = 1e-4;
+/// How many times the residual that a step begins with it may leave when its iterations are over, if nobody has said
+/// that it is to end after so many passes. What is warned of is a twentieth of that; beyond, forces and places have
+/// nothing to do with each other.
+const DIVERGED: f64 = 10.0;
 /// Iterations of a linear solve without a budget.
 const MOST_PRODUCTS: u64 = 5000;
 
@@ -177,6 +181,14 @@ impl Newton<'_, '_> {
             let taken = self.settings.newton > 1 || iterations > 0 || size == 0.0;
             let solved = taken && size <= enough && !moves;
             let ends = iterations >= self.settings.newton && !moves || self.left() < ITERATION + u64::from(moves);
+            let diverged = !solved && ends && size > DIVERGED * first && self.settings.budget.is_none();
+            if diverged && !self.settings.formula.is_of_rest() {
+                return Err(Lost::Because(format!(
+                    "after {iterations} Newton iterations {:.0} times the residual of their beginning is left, {size:.3e} N{}",
+                    size / first,
+                    self.what_is_beyond()
+                )));
+            }
             if solved || ends {
                 return Ok(self.left_of([first, size], solved, remaining));
             }

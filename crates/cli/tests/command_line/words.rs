@@ -14,6 +14,11 @@ fn quiet_says_nothing_but_warnings_and_errors() {
     assert!(place.path("out/block/summary.json").exists());
     let ended = place.sinew(&[&["run", "block.ron", "-q", "--set", "output.fields_every=5"], &SHORT[..]].concat());
     ended.wants(0, &["warning", "`fields_every` is longer than the scene"]);
+    // what is warned of on the way stands in the report, which is not wanted
+    let warns = [&["run", "block.ron", "--set", "guards=(hourglass: 1e-6)"], &SHORT[..]].concat();
+    let (report, quiet) = (place.sinew(&warns), place.sinew(&[&["-q"], &warns[..]].concat()));
+    assert!(report.said.contains("warnings    from t = "), "{}", report.said);
+    assert!(quiet.said.is_empty() && quiet.complained.starts_with("warning: from t = "), "{}", quiet.complained);
     place.sinew(&["run", "-q", "block.ron", "--set", "duration=-1"]).wants(2, &["must be above 0"]);
     place.sinew(&["run", "-q", "-v", "block.ron"]).wants(2, &["cannot be used with"]);
     assert!(place.done(&["explain", "-q", "block.ron"]).contains("element_forces"), "what is asked for is said");

@@ -99,7 +99,7 @@ impl Newton<'_, '_> {
                 let descends = self.descends(&way, (share, work), touches.then_some(&bracket));
                 // of what is moved as told the work may be of either sign, and what slides is rubbed by what presses
                 // it, of which a symmetric tangent does not know: it leads there where less is left
-                let arrives = touches && now <= if moves { DESCENT } else { FALLS } * *size;
+                let arrives = (touches || moves) && now <= if moves { DESCENT } else { FALLS } * *size;
                 let is_enough = now <= enough || self.left() == 0 && now < *size;
                 if now.is_finite() && (descends || arrives || self.settings.newton == 1 || is_enough) {
                     self.space.to_go.go(share);
