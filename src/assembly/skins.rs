@@ -1,5 +1,6 @@
 //! Skins of bodies: files of triangles, placed as the meshes that carry them.
 
+use super::contacts::bounds;
 use super::{Assembly, PlacedMesh};
 use crate::components::AlsoWritten;
 use crate::mesh::Mesh;
@@ -8,6 +9,10 @@ use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Body, SkinFile};
 use crate::skins::Skin;
 use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// Of what a body measures across the least that its skin may without being warned of.
+const SMALLEST: f64 = 0.01;
 
 /// Gives a body its skin, where the scene has one for it.
 pub(super) fn insert(
@@ -22,6 +27,7 @@ pub(super) fn insert(
     let Some(file) = &described.skin else { return };
     match surface(assembly, described, file) {
         Ok(surface) => {
+            fits(name, (&surface.points, placed.points()), diagnostics);
             let mesh = Mesh { points: placed.points().to_vec(), cells: placed.mesh.cells.clone(), ..Mesh::default() };
             let mut body = world.entity_mut(body);
             body.insert(Skin::new(mesh, surface));
@@ -31,6 +37,23 @@ pub(super) fn insert(
             diagnostics.error_at(format!("bodies.\"{name}\".skin.file").as_str(), message);
         }
     }
+}
+
+/// Warns of a skin that cannot be that of its body, as one in millimetres.
+fn fits(name: &str, (skin, body): (&[DVec3], &[DVec3]), diagnostics: &mut Diagnostics) {
+    let ([low, high], of_skin) = (<[DVec3; 2]>::from(bounds(body)), bounds(skin));
+    let (across, own) = (low.distance(high), of_skin.0.distance(of_skin.1));
+    let beyond = skin.iter().map(|point| point.distance(point.clamp(low, high))).fold(0.0, f64::max);
+    let message = if beyond > across {
+        format!("the skin reaches {beyond:.3e} m beyond `{name}`, which measures {across:.3e} m across")
+    } else if own < SMALLEST * across {
+        format!("the skin measures {own:.3e} m across, and `{name}` {across:.3e} m")
+    } else {
+        return;
+    };
+    diagnostics
+        .warn_at(format!("bodies.\"{name}\".skin").as_str(), message)
+        .note("`scale` of the skin is what its file's numbers are multiplied with: 1e-3 where they are millimetres");
 }
 
 /// The surface where the body's mesh is (m).

@@ -294,3 +294,29 @@ fn springs_that_make_energy_in_long_steps_are_warned_of() {
         assert!(told.iter().all(|notice| notice.message.contains("lower `step` of the solver")), "{told:?}");
     }
 }
+
+/// A block that a belt takes along from rest by friction, and that does not slide: with steps of any length it goes as
+/// far as the belt, but for what it leans and for the first jerk (explicit steps: 29.4 mm of 30).
+#[test]
+fn a_block_sticks_to_a_belt_that_starts_at_once() {
+    for (elements, cells) in [("Hex8MeanDilatation", "(2, 2, 1)"), ("Hex8", "(4, 4, 2)")] {
+        for step in [0.02, 0.005, 0.001] {
+            let mut simulation = start(
+                &format!(
+                    "(duration: 0.3, solver: Implicit(step: {step}),
+                    bodies: {{\"b\": (mesh: Box(size: (0.02, 0.02, 0.01), cells: {cells}, elements: {elements}), material: \"m\")}},
+                    materials: {{\"m\": (density: 1000, corotational: Young(young: 5e4, poisson: 0.3), stiffness_damping: 1e-3)}},
+                    loads: [Gravity(acceleration: (0, 0, -9.81))],
+                    tools: {{\"k\": (shape: Plane(), path: [(t: 0, at: (0, 0, 0)), (t: 0.3, at: (0.03, 0, 0))])}},
+                    contacts: [Tool(tool: \"k\", friction: 0.8, law: Penalty(share: 1))])"
+                ),
+                Precision::F64,
+                1,
+            );
+            simulation.finish().unwrap();
+            let all = simulation.displacements("b").unwrap();
+            let mean = all.iter().sum::<DVec3>() / all.len() as f64;
+            near(&format!("{elements}, {step} s"), mean.distance(0.03 * DVec3::X), 0.0, 0.03, 0.03);
+        }
+    }
+}

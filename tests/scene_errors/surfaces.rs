@@ -196,3 +196,23 @@ fn bodies_in_each_other_at_the_start_are_told_with_their_nodes() {
     assert!(deep.contains("up to half an edge of a face"), "{deep}");
     assert!(told(MEET, "(0, 0, 0)").contains("error"), "{}", told(MEET, "(0, 0, 0)"));
 }
+
+#[test]
+fn a_skin_that_cannot_be_that_of_its_body_is_told_of() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("skin.obj"), "v 0 0 0\nv 0.1 0 0\nv 0 0.12 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\n")
+        .unwrap();
+    let told = |scale: f64| {
+        let text = format!(
+            "(duration: 0.1, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4)), material: \"m\",
+                skin: (file: \"skin.obj\", scale: {scale}))}},
+            materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
+            constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))])"
+        );
+        crate::complaints::told_of(&text, folder.path())
+    };
+    assert_eq!(told(1.0), "");
+    assert_eq!(told(0.1), "", "a part of a body may have a skin");
+    assert!(told(1000.0).contains("warning: the skin reaches 1.199e2 m beyond `b`, which measures 1.732e-1 m across"));
+    assert!(told(1e-3).contains("warning: the skin measures 1.5"), "{}", told(1e-3));
+}

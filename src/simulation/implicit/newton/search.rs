@@ -5,6 +5,7 @@ use super::super::trial::Tried;
 use super::super::vectors::{combine, copy};
 use super::{DESCENT, Lost, Newton, Way, Workspace};
 use crate::components::Clock;
+use crate::error::Error;
 
 /// How often a way is halved.
 const MOST_HALVINGS: u32 = 12;
@@ -80,17 +81,14 @@ impl Newton<'_, '_> {
         let moves = self.space.to_go.moves();
         let ends = self.longest();
         let (mut share, mut bracket, mut halvings) = (ends, Bracket::from(begins, ends), 0);
+        // where least is left, and how much
+        let mut best = (0.0, DESCENT * *size);
         for look in 0..=MOST_LOOKS {
             if look > MOST_HALVINGS && !bracket.crosses() {
                 break;
             }
             halvings = look;
-            let Workspace { correction, p, to_go, vectors: Vectors { image: from, .. }, .. } = &mut *self.space;
-            copy(correction, from);
-            combine(correction, p, |from, p| from + share * p);
-            // where held axes go p is 0
-            to_go.add(share, correction);
-            let tried = self.forces_at_w()?;
+            let tried = self.forces_along(share)?;
             let mut work = f64::NAN;
             self.beyond |= !tried.sound;
             if tried.sound {
@@ -101,6 +99,9 @@ impl Newton<'_, '_> {
                 // it, of which a symmetric tangent does not know: it leads there where less is left
                 let arrives = (touches || moves) && now <= if moves { DESCENT } else { FALLS } * *size;
                 let is_enough = now <= enough || self.left() == 0 && now < *size;
+                if now < best.1 {
+                    best = (share, now);
+                }
                 if now.is_finite() && (descends || arrives || self.settings.newton == 1 || is_enough) {
                     self.space.to_go.go(share);
                     *size = now;
@@ -113,15 +114,34 @@ impl Newton<'_, '_> {
             }
             share = if touches { bracket.next(share, work) } else { 0.5 * share };
         }
+        if self.left() == 0 {
+            return Ok(self.forces_along(0.0)?);
+        }
+        if best.0 > 0.0 && touches && !self.settings.formula.is_of_rest() {
+            // slowly is better than not at all: between sticking and sliding forces have a kink
+            let tried = self.forces_along(best.0)?;
+            self.space.to_go.go(best.0);
+            *size = self.residual();
+            return Ok(tried);
+        }
         let Workspace { correction, vectors, .. } = &mut *self.space;
         copy(correction, &vectors.image);
-        if self.left() == 0 {
-            return Ok(self.forces_at_w()?);
-        }
         Err(Lost::Because(format!(
             "no descent after {halvings} halvings of a Newton step, at a residual of {size:.3e} N{}",
             self.what_is_beyond()
         )))
+    }
+
+    /// Goes a share of the way along p from where it began, which is kept, and takes the forces there.
+    fn forces_along(&mut self, share: f64) -> Result<Tried, Error> {
+        let Workspace { correction, p, to_go, vectors: Vectors { image: from, .. }, .. } = &mut *self.space;
+        copy(correction, from);
+        if share > 0.0 {
+            combine(correction, p, |from, p| from + share * p);
+            // where held axes go p is 0
+            to_go.add(share, correction);
+        }
+        self.forces_at_w()
     }
 
     /// The share of p beyond which an axis would go farther than it may.
