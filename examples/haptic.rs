@@ -10,6 +10,7 @@ use sinew::glam::DVec3;
 use sinew::port::{DevicePose, ToolPort, Touch, VirtualCoupling};
 use sinew::{BackendChoice, Error, InputRecording, Options, SceneFile, Simulation};
 use std::collections::VecDeque;
+use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -236,9 +237,23 @@ fn overhead(touched: &Touched, options: &Options) -> Result<[f64; 3], Error> {
 }
 
 #[allow(dead_code)]
-fn main() -> Result<(), Error> {
+fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
-    let seconds = arguments.next().and_then(|word| word.parse().ok()).unwrap_or(3.0);
+    let seconds = arguments.next().map_or(Ok(3.0), |word| word.parse());
+    let Some(seconds) = seconds.ok().filter(|seconds: &f64| *seconds > 0.0 && seconds.is_finite()) else {
+        eprintln!("haptic [SECONDS] [SCENE]: SECONDS is a number above 0");
+        return ExitCode::from(2);
+    };
+    match feel(seconds, arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn feel(seconds: f64, mut arguments: impl Iterator<Item = String>) -> Result<(), Error> {
     let touched = arguments.next().map_or_else(Touched::block, |path| Touched::lens(&path));
     let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
     let (felt, recording, mut simulation) = press(&touched, &options, seconds)?;

@@ -8,7 +8,7 @@ use crate::components::*;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Attachment, Point, Select};
 use bevy_ecs::prelude::*;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use std::collections::BTreeMap;
 
 /// What is made of the attachments so far.
@@ -58,8 +58,7 @@ fn between_led_nodes(glue: &Glue, world: &World, diagnostics: &mut Diagnostics) 
     let mut counts: BTreeMap<usize, [usize; 2]> = BTreeMap::new();
     for tie in &glue.ties {
         let of_point = tie.nodes.iter().all(|&(row, _)| is_led(tie.bodies[0], row));
-        let of_face =
-            tie.corners.iter().zip(tie.weights).all(|(&row, weight)| weight == 0.0 || is_led(tie.bodies[1], row));
+        let of_face = tie.bearers().all(|(row, _)| is_led(tie.bodies[1], row));
         let [led, all] = counts.entry(tie.number).or_default();
         (*led, *all) = (*led + usize::from(of_point && of_face), *all + 1);
     }
@@ -226,14 +225,21 @@ fn tied(
     (strength, number, node): (Strength, usize, Option<u64>),
 ) -> TiedPoint {
     let points = &face.placed.mesh.points;
-    let axes = frame_of(found.corners.map(|node| points[node as usize]));
-    let gap = axes.map_or(DVec3::ZERO, |axes| DVec3::from_array(axes.map(|axis| axis.dot(at - found.at))));
+    let corners = found.corners.map(|node| points[node as usize]);
+    let off_it = at.distance(found.at) > TOUCHES * corners[0].distance(corners[1]);
+    let carried = off_it.then(|| carried(face, found, at)).flatten();
+    let (weights, behind) =
+        carried.map_or((found.weights, None), |(weights, node, weight)| (weights, Some((node, weight))));
+    let of_behind = behind.map_or(DVec3::ZERO, |(node, weight)| points[node as usize] * weight);
+    let place = corners.iter().zip(weights).map(|(corner, weight)| *corner * weight).sum::<DVec3>() + of_behind;
+    let gap = frame_of(corners).map_or(DVec3::ZERO, |axes| DVec3::from_array(axes.map(|axis| axis.dot(at - place))));
     let (block, row) = face.element_rows[found.element as usize];
     TiedPoint {
         bodies,
         nodes,
         corners: found.corners.map(|node| face.node_rows[node as usize]),
-        weights: found.weights,
+        weights,
+        behind: behind.map(|(node, weight)| (face.node_rows[node as usize], weight)),
         element: (face.blocks[block as usize], row),
         gap,
         strength,
@@ -241,4 +247,22 @@ fn tied(
         number,
         node,
     }
+}
+
+/// What a point may be off a face, in sides of it, that touches it.
+const TOUCHES: f64 = 1e-9;
+
+/// What the corners of a face have of a place (m) off it, and which node of the element behind has the rest: of all of
+/// them that which is farthest from the face. None where the element has no thickness.
+fn carried(face: &BodyParts, found: &OnSurface, at: DVec3) -> Option<([f64; 3], u32, f64)> {
+    let mesh = &face.placed.mesh;
+    let [a, b, c] = found.corners.map(|node| mesh.points[node as usize]);
+    let out = (b - a).cross(c - a).normalize_or_zero();
+    let depth = |node: u32| (mesh.points[node as usize] - a).dot(out).abs();
+    let nodes = mesh.element(found.element as usize).iter().copied();
+    let node = nodes.max_by(|one, other| depth(*one).total_cmp(&depth(*other)))?;
+    let sides = DMat3::from_cols(b - a, c - a, mesh.points[node as usize] - a);
+    let shares = sides.inverse() * (at - a);
+    let weights = [1.0 - shares.x - shares.y - shares.z, shares.x, shares.y];
+    (depth(node) > TOUCHES * a.distance(b) && shares.is_finite()).then_some((weights, node, shares.z))
 }

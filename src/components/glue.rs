@@ -60,10 +60,14 @@ pub struct TiedPoint {
     pub corners: [u32; 3],
     /// See there.
     pub weights: [f64; 3],
+    /// Of a point that is off the face the row of a node of the element behind, and what it has: with those of the
+    /// corners, some beyond 1 or below 0, these weights give the point's own place. So the force on the point and those
+    /// on the face's body are of one line, and no moment is made.
+    pub behind: Option<(u32, f64)>,
     /// The element behind the face: the block, and the row there.
     pub element: (Entity, u32),
-    /// Where the point is as seen from that place, in the frame of the face (m): along its first side, across that, and
-    /// out.
+    /// Where the point is as seen from the place of these weights, in the frame of the face (m): along its first side,
+    /// across that, and out; but for rounding 0.
     pub gap: DVec3,
     /// What it bears.
     pub strength: Strength,
@@ -73,6 +77,14 @@ pub struct TiedPoint {
     pub number: usize,
     /// The node that it is, by the author's number, if it is one.
     pub node: Option<u64>,
+}
+
+impl TiedPoint {
+    /// Rows of the nodes of the face's body that bear it, and what each has of the place on it.
+    pub fn bearers(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+        let corners = self.corners.into_iter().zip(self.weights);
+        corners.chain(self.behind).filter(|(_, weight)| *weight != 0.0)
+    }
 }
 
 /// All that is tied.

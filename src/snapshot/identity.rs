@@ -141,7 +141,10 @@ fn sets_in_use(world: &mut World) -> u64 {
         for tie in &glue.ties {
             let nodes: Vec<u8> =
                 tie.nodes.iter().flat_map(|(row, weight)| [bytes(&[*row]), bytes(&[*weight])].concat()).collect();
-            note("tie", tie.number, &[&nodes, bytes(&tie.corners), bytes(&tie.weights), bytes(&tie.gap.to_array())]);
+            let behind: Vec<u8> =
+                tie.behind.iter().flat_map(|(row, weight)| [bytes(&[*row]), bytes(&[*weight])].concat()).collect();
+            let face = [bytes(&tie.corners), bytes(&tie.weights), &behind].concat();
+            note("tie", tie.number, &[&nodes, &face, bytes(&tie.gap.to_array())]);
         }
     }
     world.query::<&RemovalCriterion>().iter(world).for_each(|r| {

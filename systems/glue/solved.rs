@@ -22,8 +22,8 @@ pub(crate) fn find(world: &World, first_axis: impl Fn(Entity) -> Option<usize>, 
         let mass: f64 = tie.nodes.iter().map(|&(row, weight)| weight * mass.get(row as usize)).sum();
         let stiffness = mass * STIFF / (springs.step * springs.step);
         let point = tie.nodes.iter().map(|&(row, weight)| (from + 3 * row as usize, weight));
-        let face = tie.corners.iter().zip(tie.weights).map(|(&row, weight)| (to + 3 * row as usize, -weight));
-        let parts = point.chain(face.filter(|(_, weight)| *weight != 0.0)).collect();
+        let face = tie.bearers().map(|(row, weight)| (to + 3 * row as usize, -weight));
+        let parts = point.chain(face).collect();
         found.push(TouchingSpring { parts, force: DVec3::ZERO, slopes: [DMat3::IDENTITY * stiffness, DMat3::ZERO] });
     }
 }

@@ -19,7 +19,8 @@ pub(super) fn nodes_of(glue: &Glue) -> Vec<(usize, u32)> {
     let of_tie = |tie: &TiedPoint| {
         let [of, onto] = tie.bodies;
         let points: Vec<(usize, u32)> = tie.nodes.iter().map(|&(row, _)| (of, row)).collect();
-        points.into_iter().chain(tie.corners.map(|row| (onto, row)))
+        let corners = tie.corners.into_iter().chain(tie.behind.map(|(row, _)| row));
+        points.into_iter().chain(corners.map(move |row| (onto, row)))
     };
     let mut nodes: Vec<(usize, u32)> = glue.ties.iter().flat_map(of_tie).collect();
     nodes.sort_unstable();
@@ -41,8 +42,8 @@ pub(super) fn parts_of(tie: &TiedPoint, nodes: &[(usize, u32)]) -> TieNodes {
     let [of, onto] = tie.bodies;
     let corners = tie.corners.map(|row| place(onto, row));
     let points = tie.nodes.iter().map(|&(row, weight)| (place(of, row), weight));
-    let of_face = corners.into_iter().zip(tie.weights).filter(|(_, weight)| *weight != 0.0);
-    TieNodes { parts: points.chain(of_face.map(|(corner, weight)| (corner, -weight))).collect(), corners }
+    let of_face = tie.bearers().map(|(row, weight)| (place(onto, row), -weight));
+    TieNodes { parts: points.chain(of_face).collect(), corners }
 }
 
 /// What a step finds, kept so that the next one need not ask for memory: nothing in it is carried on from step to step
@@ -132,7 +133,8 @@ impl Work {
         let corners = self.corners[number].map(|node| self.places[node as usize]);
         let of_point = &solved.parts[..tie.nodes.len()];
         let point: DVec3 = of_point.iter().map(|&(node, weight)| self.places[node as usize] * weight).sum();
-        let mut belongs: DVec3 = corners.iter().zip(tie.weights).map(|(corner, weight)| *corner * weight).sum();
+        let of_face = &solved.parts[tie.nodes.len()..];
+        let mut belongs: DVec3 = of_face.iter().map(|&(node, weight)| self.places[node as usize] * -weight).sum();
         self.outs[number] = DVec3::ZERO;
         if let Some([along, across, out]) = frame_of(corners) {
             belongs += along * tie.gap.x + across * tie.gap.y + out * tie.gap.z;

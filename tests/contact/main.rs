@@ -19,6 +19,7 @@ mod frames;
 mod free_tools;
 mod given_back;
 mod glue;
+mod glue_gaps;
 mod glued_grasps;
 mod grasp;
 mod grasped_surfaces;

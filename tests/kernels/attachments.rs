@@ -107,7 +107,7 @@ fn bounds(pair: &Pair, sweeps: u32) -> Bounds {
     let parts = |tie: &TiedPoint| -> Vec<((Entity, u32), f64)> {
         let [of, onto] = tie.bodies.map(|body| glue.bodies[body]);
         let points = tie.nodes.iter().map(|&(row, weight)| ((of, row), weight));
-        points.chain(tie.corners.into_iter().zip(tie.weights).map(|(row, weight)| ((onto, row), -weight))).collect()
+        points.chain(tie.bearers().map(|(row, weight)| ((onto, row), -weight))).collect()
     };
     let holds = |tie: &TiedPoint| {
         world.get::<TieState>(glue.bodies[tie.bodies[0]]).unwrap().get(TIE_NUMBERS * tie.place) == 0.0

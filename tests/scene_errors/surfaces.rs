@@ -209,7 +209,7 @@ fn a_skin_that_cannot_be_that_of_its_body_is_told_of() {
             materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
             constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))])"
         );
-        crate::complaints::told_of(&text, folder.path())
+        told_of(&text, folder.path())
     };
     assert_eq!(told(1.0), "");
     assert_eq!(told(0.1), "", "a part of a body may have a skin");

@@ -70,7 +70,7 @@ fn parse(bytes: &[u8], path: &Path, beside: Beside<'_>) -> Result<Triangles, Fau
         return Err(unknown(bytes, start, &extension));
     };
     if read.triangles.is_empty() {
-        return Err(Fault::whole("the file has no triangles", "a tool is a closed surface of triangles"));
+        return Err(Fault::whole("the file has no triangles", "tools and skins are surfaces of triangles"));
     }
     Ok(read)
 }
