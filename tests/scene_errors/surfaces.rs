@@ -214,5 +214,5 @@ fn a_skin_that_cannot_be_that_of_its_body_is_told_of() {
     assert_eq!(told(1.0), "");
     assert_eq!(told(0.1), "", "a part of a body may have a skin");
     assert!(told(1000.0).contains("warning: the skin reaches 1.199e2 m beyond `b`, which measures 1.732e-1 m across"));
-    assert!(told(1e-3).contains("warning: the skin measures 1.5"), "{}", told(1e-3));
+    assert!(told(1e-3).contains("warning: the skin measures 1.855e-4 m across"), "{}", told(1e-3));
 }
