@@ -42,15 +42,15 @@ fn moment(simulation: &mut Simulation) -> DVec3 {
 #[test]
 fn free_cubes_over_a_gap_keep_their_moment_and_make_no_energy() {
     for run in configurations() {
-        for (elements, gap) in KINDS.iter().flat_map(|elements| [4e-4, 4e-3].map(|gap| (elements, gap))) {
-            let more = "duration: 0.3, materials: {\"t\": (density: 1000, neo_hookean: Young(young: 3e4, poisson: 0.3), stiffness_damping: 5e-5)}";
+        for (elements, gap) in KINDS[..2].iter().flat_map(|elements| [4e-4, 4e-3].map(|gap| (elements, gap))) {
+            let more = "duration: 0.2, materials: {\"t\": (density: 1000, neo_hookean: Young(young: 3e4, poisson: 0.3), stiffness_damping: 5e-5)}";
             let text = cubes(elements, gap, ["velocity: (0.05, 0, 0)", "velocity: (-0.05, 0, 0)"], more);
             let mut simulation = run.start(&text);
             simulation.advance(1).unwrap();
             let what = format!("{}, {elements}, {gap} m", run.name);
             let first = moment(&mut simulation);
             let mut most = 20e-6;
-            for time in [0.05, 0.1, 0.2, 0.3] {
+            for time in [0.05, 0.1, 0.2] {
                 simulation.advance_to(time).unwrap();
                 let energies = simulation.energies().unwrap();
                 let now = energies.kinetic + energies.strain + energies.hourglass;
@@ -93,7 +93,7 @@ fn what_is_drawn_sideways_over_a_gap_is_held_by_the_whole_moment() {
 fn implicit_steps_hold_over_a_gap() {
     for (scheme, gap) in [("Euler", 4e-3), ("GeneralizedAlpha()", 4e-3), ("Euler", 4e-4)] {
         let more = format!(
-            "duration: 0.1, solver: Implicit(step: 5e-4, scheme: {scheme}),
+            "duration: 0.04, solver: Implicit(step: 1e-3, scheme: {scheme}),
             materials: {{\"t\": (density: 1000, neo_hookean: Young(young: 3e4, poisson: 0.3), stiffness_damping: 5e-5)}}"
         );
         let text = cubes("Hex8MeanDilatation", gap, ["velocity: (0.05, 0, 0)", "velocity: (-0.05, 0, 0)"], &more);
