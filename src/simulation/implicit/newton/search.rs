@@ -97,7 +97,7 @@ impl Newton<'_, '_> {
                 let descends = self.descends(&way, (share, work), touches.then_some(&bracket));
                 // of what is moved as told the work may be of either sign, and what slides is rubbed by what presses
                 // it, of which a symmetric tangent does not know: it leads there where less is left
-                let arrives = (touches || moves) && now <= if moves { DESCENT } else { FALLS } * *size;
+                let arrives = touches && now <= if moves { DESCENT } else { FALLS } * *size;
                 let is_enough = now <= enough || self.left() == 0 && now < *size;
                 if now < best.1 {
                     best = (share, now);
@@ -117,8 +117,9 @@ impl Newton<'_, '_> {
         if self.left() == 0 {
             return Ok(self.forces_along(0.0)?);
         }
-        if best.0 > 0.0 && touches && !self.settings.formula.is_of_rest() {
-            // slowly is better than not at all: between sticking and sliding forces have a kink
+        if best.0 > 0.0 && (touches || moves) && !self.settings.formula.is_of_rest() {
+            // slowly is better than not at all: between sticking and sliding forces have a kink, and the work along the
+            // way of what is moved evenly as told is that of next to no forces
             let tried = self.forces_along(best.0)?;
             self.space.to_go.go(best.0);
             *size = self.residual();
