@@ -17,9 +17,6 @@ pub const FRAMES: Implicitly = Implicitly::By("solver=Implicit(tolerance: 1e-6)"
 /// What moves quickly: implicit Euler by steps of 1 ms.
 pub const SHORT: Implicitly = Implicitly::By("solver=Implicit(step: 0.001, tolerance: 1e-8)");
 
-/// Implicit Euler by steps of 1 ms, to the tolerance that steps have which say no more.
-pub const LOOSE: Implicitly = Implicitly::By("solver=Implicit(step: 0.001)");
-
 /// The trapezoidal rule, which keeps energy, by steps of .1 ms.
 pub const KEEPING: Implicitly =
     Implicitly::By("solver=Implicit(scheme: GeneralizedAlpha(high_frequencies: 1), step: 1e-4, tolerance: 1e-8)");

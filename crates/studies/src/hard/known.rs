@@ -25,12 +25,6 @@ pub const SHORTFALLS: &[Shortfall] = &[
         why: "the hourglass stiffness is that of bending, and a load on one node bends: .6 of the strain energy on every mesh and at every Poisson's ratio; it is warned of, and Hex8MeanDilatation has no such energy",
     },
     Shortfall {
-        case: "h07",
-        on: |c, _| c.implicit,
-        verdict: CaseVerdict::FailedHonestly,
-        why: "between walls, at 9 % of its height, Newton's directions lead no way down in steps of 1 ms, at 77 % where steps are solved to 1e-8; why has not been found out",
-    },
-    Shortfall {
         case: "h22",
         on: |c, _| c.implicit,
         verdict: CaseVerdict::Failed,
