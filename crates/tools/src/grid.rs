@@ -2,16 +2,21 @@
 
 use super::closed::Closed;
 use super::form::{FAR, NEAR};
+use super::lost::Lost;
+use super::mass::{self, Moments};
 use super::tree::{SLACK, Tree};
-use glam::{DVec3, UVec3};
+use glam::{DMat3, DVec3, UVec3};
 use rayon::prelude::*;
 use sinew_mesh::{SurfaceError, Triangles};
 
 /// Cells of the grid between it and the surface, on all sides.
 const MARGIN: f64 = 2.0;
 
-/// Cells along the longest side of a surface where nothing is said: 64 points with the margin.
-const USUAL_CELLS: f64 = 59.0;
+/// Cells along the longest side of a surface where nothing is said, at least: 64 points with the margin.
+const USUAL_CELLS: usize = 59;
+
+/// So many points a grid has at most where nothing is said and these cells do not ask for more.
+const USUAL_NODES: f64 = 64.0 * 64.0 * 64.0;
 
 /// Up to so many cells from the surface distances are exact, beyond nearly so; more than the diagonal of a cell.
 const EXACT: f64 = 3.0;
@@ -32,6 +37,8 @@ pub struct DistanceGrid {
     values: Vec<f32>,
     /// The bounds of the surface (m).
     bounds: [DVec3; 2],
+    /// Of what the triangles enclose.
+    moments: Moments,
     surface_error: f64,
     notes: Vec<String>,
 }
@@ -40,10 +47,19 @@ impl DistanceGrid {
     /// The most points a grid may have: 256 along each axis, 64 MiB.
     pub const MOST_NODES: usize = 256 * 256 * 256;
 
-    /// A grid with so many points that the surface's longest side has 59 cells (m).
+    /// The spacing (m) by which the surface's longest side has as many whole cells as 64³ points allow, the margin
+    /// among them, and 59 at least: that of a cube has 59, what is slender has finer cells at the same cost.
     pub fn usual_spacing(surface: &Triangles) -> f64 {
         let [low, high] = surface.bounds();
-        (high - low).max_element() / USUAL_CELLS
+        let spacing = |cells: usize| (high - low).max_element() / cells as f64;
+        let fits = |cells: usize| points(high - low, spacing(cells)).element_product() <= USUAL_NODES;
+        // the points grow with the cells; a line of 64³ cells has more
+        let (mut cells, mut more) = (USUAL_CELLS, USUAL_NODES as usize);
+        while more - cells > 1 {
+            let middle = cells.midpoint(more);
+            *(if fits(middle) { &mut cells } else { &mut more }) = middle;
+        }
+        spacing(cells)
     }
 
     /// The distances to a surface on a grid of a spacing (m), which should be no more than a quarter of the smallest
@@ -77,10 +93,12 @@ impl DistanceGrid {
                 *value = (sign * distance) as f32;
             }
         });
-        let mut grid = Self { origin, spacing, counts, values, bounds, surface_error: 0.0, notes: Vec::new() };
+        let moments = mass::enclosed(&closed.surface);
+        let mut grid = Self { origin, spacing, counts, values, bounds, moments, surface_error: 0.0, notes: Vec::new() };
         grid.check()?;
         let (farthest, mean) = grid.off(&closed.surface);
         grid.surface_error = farthest;
+        let lost = Lost::of(&grid, &closed, &tree);
         grid.notes = closed.notes;
         if mean > COARSE * spacing {
             grid.notes.push(format!(
@@ -89,6 +107,8 @@ impl DistanceGrid {
                 100.0 * mean / spacing
             ));
         }
+        let is_possible = |finer| frame(bounds, finer).is_ok();
+        grid.notes.extend(lost.map(|lost| lost.note(spacing, is_possible)));
         Ok(grid)
     }
 
@@ -212,6 +232,12 @@ impl DistanceGrid {
         ((low + high) / 2.0, low.distance(high) / 2.0)
     }
 
+    /// Volume (m³), centre (m) and, for a density of one, moments of inertia about it (m⁵) of what the triangles
+    /// enclose, hollows left out: to rounding, whatever the grid is.
+    pub(super) fn volume_moments(&self) -> (f64, DVec3, DMat3) {
+        self.moments
+    }
+
     /// How deep inside its deepest point is (m): half of the thickness of what is thin.
     pub fn depth(&self) -> f64 {
         -f64::from(self.values.iter().copied().fold(0.0, f32::min))
@@ -228,9 +254,14 @@ impl DistanceGrid {
     }
 }
 
+/// How many points there are along each axis for a size (m).
+fn points(size: DVec3, spacing: f64) -> DVec3 {
+    (size / spacing).ceil() + 1.0 + 2.0 * MARGIN
+}
+
 /// The first point, and how many there are along each axis.
 fn frame([low, high]: [DVec3; 2], spacing: f64) -> Result<(DVec3, UVec3), SurfaceError> {
-    let points = |spacing: f64| ((high - low) / spacing).ceil() + 1.0 + 2.0 * MARGIN;
+    let points = |spacing: f64| points(high - low, spacing);
     let nodes = |spacing: f64| points(spacing).element_product();
     let most = DistanceGrid::MOST_NODES;
     // also where it is no number

@@ -1,8 +1,10 @@
 //! Rigid tools: shapes that touch bodies, known by the signed distance to their surface in a frame of their own.
 
 mod closed;
+mod disc;
 mod form;
 mod grid;
+mod lost;
 mod mass;
 mod pivot;
 mod rigid;
@@ -15,6 +17,7 @@ mod tests;
 #[doc(hidden)]
 pub mod tree;
 
+pub use disc::share_in_disc;
 pub use form::Form;
 pub use grid::DistanceGrid;
 pub use pivot::closest_approach;

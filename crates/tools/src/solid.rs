@@ -202,15 +202,16 @@ impl Solid {
         }
     }
 
-    /// Half of what it measures across where it is thinnest (m): of a tube half its wall, of a pointed cone its
-    /// rounding. Between nodes that are farther apart it slips through. None of a plane.
+    /// Half of what it measures across where it is thinnest (m), along its axis, too: of a tube half its wall, of a
+    /// pointed cone its rounding. Between nodes that are farther apart it slips through. None of a plane.
     pub fn smallest_radius(&self) -> Option<f64> {
         match self.shape {
             Shape::Plane {} => None,
-            Shape::Sphere { radius } | Shape::Capsule { radius, .. } | Shape::Cylinder { radius, .. } => Some(radius),
+            Shape::Sphere { radius } | Shape::Capsule { radius, .. } => Some(radius),
+            Shape::Cylinder { length, radius } => Some(radius.min(length / 2.0)),
             Shape::Box { size } => Some(size.min_element() / 2.0),
-            Shape::Cone { tip, base, .. } => Some(tip.min(base).max(self.rounding)),
-            Shape::Tube { inner, outer, .. } => Some((outer - inner) / 2.0),
+            Shape::Cone { length, tip, base } => Some(tip.min(base).max(self.rounding).min(length / 2.0)),
+            Shape::Tube { length, inner, outer, .. } => Some((outer - inner).min(length) / 2.0),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Triangles on the surface of a shape, for pictures.
+//! Half sections of shapes, and triangles on their surface, for pictures.
 
 use super::shape::Shape;
 use super::solid::Solid;
@@ -15,46 +15,60 @@ const UP: f64 = 90.0;
 const IN: f64 = 180.0;
 
 /// An arc of a profile: the centre (across, along z; m), and where it begins and ends (degrees).
-struct Arc(DVec2, f64, f64);
+pub(super) struct Arc(pub DVec2, pub f64, pub f64);
+
+impl Arc {
+    /// Where it begins and ends (m), of a radius (m).
+    pub fn ends(&self, radius: f64) -> [DVec2; 2] {
+        [self.1, self.2].map(|degrees| self.0 + radius * direction(degrees))
+    }
+}
 
 impl Solid {
+    /// The arcs that its half section has, of one radius (m), with what is straight between them: from the tip outside
+    /// to the other end, of a tube (square, before it is bevelled) round its wall. None of planes and boxes.
+    pub(super) fn section(&self) -> Option<(Vec<Arc>, f64)> {
+        let r = self.rounding();
+        let [a, b, c, d, e, f] = self.form().sizes();
+        let arc = |across: f64, z: f64, from: f64, to: f64| Arc(DVec2::new(across, z), from, to);
+        Some(match *self.shape() {
+            Shape::Plane {} | Shape::Box { .. } => return None,
+            Shape::Sphere { .. } => (vec![arc(0.0, 0.0, DOWN, UP)], a),
+            Shape::Capsule { .. } => (vec![arc(0.0, b, DOWN, OUT), arc(0.0, c, OUT, UP)], a),
+            Shape::Cylinder { .. } => (vec![arc(a, b, DOWN, OUT), arc(a, c, OUT, UP)], r),
+            Shape::Cone { .. } => {
+                let mantle = f.atan2(e).to_degrees();
+                (vec![arc(a, c, DOWN, mantle), arc(b, d, mantle, UP)], r)
+            }
+            Shape::Tube { .. } => {
+                (vec![arc(b, c, DOWN, OUT), arc(b, d, OUT, UP), arc(a, d, UP, IN), arc(a, c, IN, 360.0 + DOWN)], r)
+            }
+        })
+    }
+
     /// A closed surface of triangles in the tool's frame, normals outwards, with so many segments around (three at
     /// least). Its points are on the surface (m). That of a plane is a square about the origin, `half` (m) from its
     /// middle to its sides, which is not closed.
     pub fn surface(&self, segments: usize, half: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let segments = segments.max(LEAST_SEGMENTS);
-        let r = self.rounding();
-        let [a, b, c, d, e, f] = self.form().sizes();
-        let arc = |across: f64, z: f64, from: f64, to: f64| Arc(DVec2::new(across, z), from, to);
-        let rings = match *self.shape() {
-            Shape::Plane {} => {
-                let corners = [(-half, -half), (half, -half), (half, half), (-half, half)];
-                return (corners.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec(), vec![[0, 1, 2], [0, 2, 3]]);
+        let [a, b, c, _, e, f] = self.form().sizes();
+        let Some((arcs, radius)) = self.section() else {
+            if matches!(self.shape(), Shape::Box { .. }) {
+                return joined(&box_rings(DVec3::new(a, b, c), self.rounding(), segments));
             }
-            Shape::Box { .. } => box_rings(DVec3::new(a, b, c), r, segments),
-            Shape::Sphere { .. } => revolved(solid(&[arc(0.0, 0.0, DOWN, UP)], a, segments), segments),
-            Shape::Capsule { .. } => {
-                revolved(solid(&[arc(0.0, b, DOWN, OUT), arc(0.0, c, OUT, UP)], a, segments), segments)
-            }
-            Shape::Cylinder { .. } => {
-                revolved(solid(&[arc(a, b, DOWN, OUT), arc(a, c, OUT, UP)], r, segments), segments)
-            }
-            Shape::Cone { .. } => {
-                let mantle = f.atan2(e).to_degrees();
-                revolved(solid(&[arc(a, c, DOWN, mantle), arc(b, d, mantle, UP)], r, segments), segments)
-            }
-            Shape::Tube { outer, .. } => {
-                let around = [arc(b, c, DOWN, OUT), arc(b, d, OUT, UP), arc(a, d, UP, IN), arc(a, c, IN, 360.0 + DOWN)];
-                let mut around = profile(&around, r, segments);
-                around.extend(around.first().copied());
-                let mut rings = revolved(around, segments);
-                // what the bevel takes away is moved up to it
-                for point in rings.iter_mut().flatten() {
-                    point.z = point.z.max((outer - point.x) * e / f);
-                }
-                rings
-            }
+            let corners = [(-half, -half), (half, -half), (half, half), (-half, half)];
+            return (corners.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec(), vec![[0, 1, 2], [0, 2, 3]]);
         };
+        let Shape::Tube { outer, .. } = *self.shape() else {
+            return joined(&revolved(solid(&arcs, radius, segments), segments));
+        };
+        let mut around = profile(&arcs, radius, segments);
+        around.extend(around.first().copied());
+        let mut rings = revolved(around, segments);
+        // what the bevel takes away is moved up to it
+        for point in rings.iter_mut().flatten() {
+            point.z = point.z.max((outer - point.x) * e / f);
+        }
         joined(&rings)
     }
 }

@@ -3,6 +3,7 @@
 
 mod files;
 mod grids;
+mod lost;
 mod shapes;
 
 use glam::DVec3;

@@ -221,6 +221,18 @@ fn balls_around_solids_hold_their_surfaces_and_touch_the_sharp_ones() {
     assert_eq!((plane.bounding_sphere(), plane.smallest_radius()), (None, None));
 }
 
+/// Discs, washers and short cones are as thin as they are long.
+#[test]
+fn the_smallest_radius_is_half_of_the_least_that_a_solid_measures() {
+    let of = |shape: Shape| Solid::new(shape, 0.0).unwrap().smallest_radius();
+    assert_eq!(of(Shape::Cylinder { length: 0.1, radius: 0.01 }), Some(0.01));
+    assert_eq!(of(Shape::Cylinder { length: 0.001, radius: 0.01 }), Some(0.0005));
+    assert_eq!(of(Shape::Tube { length: 0.1, inner: 0.01, outer: 0.02, bevel: 0.0 }), Some(0.005));
+    assert_eq!(of(Shape::Tube { length: 0.004, inner: 0.01, outer: 0.02, bevel: 0.0 }), Some(0.002));
+    assert_eq!(of(Shape::Cone { length: 0.1, tip: 0.01, base: 0.02 }), Some(0.01));
+    assert_eq!(of(Shape::Cone { length: 0.001, tip: 0.01, base: 0.02 }), Some(0.0005));
+}
+
 #[test]
 fn what_is_wrong_with_a_shape_is_told_by_field() {
     let told = |shape: Shape, rounding: f64| {
