@@ -31,8 +31,8 @@ pub struct VirtualCoupling {
     /// Time (s) over which the force goes to 0 after that.
     pub decay: f64,
     force: DVec3,
-    /// Number and time of arrival of the last touch, and when the force was asked for last (s).
-    heard: (u64, f64, f64),
+    /// Number and time of arrival of the last touch, and when the force was asked for last (s); none before the first.
+    heard: Option<(u64, f64, f64)>,
 }
 
 impl VirtualCoupling {
@@ -48,7 +48,7 @@ impl VirtualCoupling {
             batch: 1e-3,
             decay: 0.05,
             force: DVec3::ZERO,
-            heard: (0, 0.0, 0.0),
+            heard: None,
         }
     }
 
@@ -61,9 +61,13 @@ impl VirtualCoupling {
     }
 
     /// The force for the hand (N) at a place (m) and velocity (m/s) of the device and at a time of its clock (s), which
-    /// must not go back.
+    /// may begin anywhere and must not go back. The first is 0.
     pub fn force(&mut self, touch: &Touch, place: DVec3, velocity: DVec3, time: f64) -> DVec3 {
-        let (sequence, arrived, before) = self.heard;
+        // a clock may begin anywhere
+        let Some((sequence, arrived, before)) = self.heard else {
+            self.heard = Some((touch.sequence, time, time));
+            return self.force;
+        };
         let arrived = if touch.sequence == sequence { arrived } else { time };
         let silent = time - arrived;
         let wanted = match touch.sequence {
@@ -79,7 +83,7 @@ impl VirtualCoupling {
         let wanted = if wanted.is_finite() { wanted.clamp_length_max(self.most_force) } else { DVec3::ZERO };
         let change = self.stiffness * self.fastest * (time - before).max(0.0);
         self.force += (wanted - self.force).clamp_length_max(change);
-        self.heard = (touch.sequence, arrived, time);
+        self.heard = Some((touch.sequence, arrived, time));
         self.force
     }
 }
