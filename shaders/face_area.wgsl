@@ -1,5 +1,5 @@
 // Areas of deformed faces, for loads that follow them. faces: six numbers a face, its nodes, what is behind it, weight;
-// face_points: four points a face at rest (m).
+// face_points: four points a face at rest, from its first (m).
 
 fn face_point(face: u32, corner: u32) -> vec3<f32> {
     let x = 12u * face + 3u * corner;

@@ -21,15 +21,20 @@ fn is_exceeded(tie: u32, force: vec3<f32>, out: vec3<f32>) -> bool {
     return false;
 }
 
-// The point's step against its face: the last or the next one.
-fn relative(tie: u32, which: u32) -> vec3<f32> {
+// The point's last step against its face.
+fn last_step(tie: u32) -> vec3<f32> {
     var sum = vec3<f32>(0.0);
     for (var number = tie_word(tie, PART); number < tie_word(tie, PART + 1u); number++) {
         let of_tie = part(number);
-        let at = NODE_NUMBERS * of_tie.index + which;
+        let at = NODE_NUMBERS * of_tie.index + LAST;
         sum += of_tie.weight * vec3<f32>(glue_nodes[at], glue_nodes[at + 1u], glue_nodes[at + 2u]);
     }
     return sum;
+}
+
+// What is counted of the work of the last step's forces: see systems/glue.rs.
+fn work_factor_before() -> f32 {
+    return (2.0 * step.work_factor - 1.0) * select(1.0, 0.5, step.number == 1u);
 }
 
 @compute @workgroup_size(64)
@@ -44,6 +49,7 @@ fn glue_note(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
         return;
     }
     let state = TIE_NUMBERS * tie_word(tie, PLACE);
+    let force_before = vec3<f32>(tie_state[state + 2u], tie_state[state + 3u], tie_state[state + 4u]);
     var force = vec3<f32>(glue_found[at + FORCE], glue_found[at + FORCE + 1u], glue_found[at + FORCE + 2u]);
     let out = vec3<f32>(glue_found[at + OUT], glue_found[at + OUT + 1u], glue_found[at + OUT + 2u]);
     // in a static analysis nothing breaks, and no work is counted
@@ -53,10 +59,10 @@ fn glue_note(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
             tie_state[state + 1u] = step.time;
             glue_found[at + ACTIVE] = 0.0;
             force = vec3<f32>(0.0);
-        } else {
-            let halfway = 0.5 * (relative(tie, LAST) + relative(tie, NEXT));
-            tie_state[state + 5u] -= step.work_factor * dot(force, halfway);
         }
+        // what a step comes to is only known after it: of the last one, both ends have their forces now
+        let forces = work_factor_before() * force_before + step.work_factor * force;
+        tie_state[state + 5u] -= 0.5 * dot(forces, last_step(tie));
     }
     for (var k = 0u; k < 3u; k++) {
         tie_state[state + 2u + k] = force[k];

@@ -14,6 +14,8 @@ struct GripRow {
 const HOLD_NUMBERS: u32 = 9u;
 const HELD: f32 = 1.0;
 const WITHOUT: f32 = 2.0;
+const SLIPPED: f32 = 3.0;
+const LET_GO: f32 = 4.0;
 
 // A point of a tool that the three slots from one on take to the scene; of a difference of poses, how far it goes.
 fn from_frame(at: u32, y: vec3<f32>) -> vec3<f32> {
@@ -37,7 +39,7 @@ fn grasp(i: u32, node: u32) {
 fn hold(i: u32, node: u32, number: u32, ends: vec4<f32>) -> vec4<f32> {
     let own = NUMBERS * (GRASPS * i + number);
     let is_closed = step.signals[grips[number].closed].y > 0.0;
-    let open = tool_hold[own + 3u] == 0.0;
+    let open = tool_hold[own + 3u] == 0.0 || tool_hold[own + 3u] == LET_GO;
     if open && !is_closed {
         return ends;
     }
@@ -45,7 +47,7 @@ fn hold(i: u32, node: u32, number: u32, ends: vec4<f32>) -> vec4<f32> {
         tool_hold[own + k] = 0.0;
     }
     if !is_closed {
-        tool_hold[own + 3u] = 0.0;
+        tool_hold[own + 3u] = select(0.0, LET_GO, tool_hold[own + 3u] == SLIPPED);
         return ends;
     }
     if mass[node] <= 0.0 {
@@ -79,7 +81,7 @@ fn hold(i: u32, node: u32, number: u32, ends: vec4<f32>) -> vec4<f32> {
     let force = of_node.to_force * gap;
     // to the end of the step it holds, as others have been told
     if length(force) > grips[number].strength {
-        tool_hold[own + 3u] = WITHOUT;
+        tool_hold[own + 3u] = SLIPPED;
     }
     tool_hold[own] = force.x;
     tool_hold[own + 1u] = force.y;

@@ -1,5 +1,5 @@
-// Lumped mass (kg) of the elements that are left, one block after the other. damp_node is in node_damping.wgsl, or
-// generated where nothing is damped.
+// Lumped mass (kg) of the elements that are left, one block after the other. damp_node is in node_damping.wgsl and
+// move_node in node_inertia.wgsl, or generated where nothing is damped or no mass is scaled.
 struct NodeMass {
     count: u32, // nodes
     first: u32, // 1: the block is the body's first
@@ -26,4 +26,5 @@ fn node_mass(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     let added = part.density * volume;
     mass[node] = select(mass[node], 0.0, part.first == 1u) + added;
     damp_node(node, part.rate * added);
+    move_node(node, added);
 }

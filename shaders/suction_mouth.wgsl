@@ -1,31 +1,81 @@
-// Marks the faces that a tool sucks; twin of systems/suction_mouth.rs. suction_presence.wgsl comes before it,
-// suction_nodes.wgsl and suction_pressure.wgsl after it; criterion_due is generated.
-struct SuctionMouth {
-    faces: u32, // of the body
-    nodes: u32, // of these faces
-    parts: u32, // flat faces that they are loaded as
-    first: u32, // where the tool's marks begin: of faces, then of nodes
-    numbers: u32, // and its numbers in suction_pressure
-    pose: u32, // first slot of where it is
-    pressure: u32, // slot of the pressure with a closed mouth (Pa)
-    bore: f32, // (m)
-    reach: f32, // (m)
-    delay: f32, // (s)
-    area: f32, // of the mouth (m²)
-}
-@group(0) @binding(0) var<uniform> mouth: SuctionMouth;
-@group(0) @binding(1) var<storage, read_write> suction_marks: array<u32>;
-@group(0) @binding(2) var<storage, read> faces: array<u32>; // five a face: corners, the face seen from behind
-@group(0) @binding(3) var<storage, read> rest_points: array<f32>; // of nodes, from the reference (m)
-@group(0) @binding(4) var<storage, read> displacement: array<f32>;
-@group(0) @binding(5) var<storage, read> face_presence: array<u32>;
+// What share of each face of a body is in the mouth of a tool, seen along its axis; twin of systems/suction_mouth.rs.
+// suction_presence.wgsl comes before it; suction_hidden.wgsl, suction_nodes.wgsl and suction_pressure.wgsl after it;
+// criterion_due and the constants are generated, what faces are is in suction_faces.wgsl.
+@group(0) @binding(0) var<storage, read> face_presence: array<u32>;
+@group(0) @binding(1) var<storage, read_write> shares_in_mouth: array<f32>;
 
 const NO_FACE: u32 = 0xffffffffu;
 
-fn place_of(node: u32) -> vec3<f32> {
-    let at = 3u * node;
-    return vec3<f32>(rest_points[at], rest_points[at + 1u], rest_points[at + 2u])
-        + vec3<f32>(displacement[at], displacement[at + 1u], displacement[at + 2u]);
+fn sector(p: vec2<f32>, q: vec2<f32>) -> f32 {
+    return 0.5 * mouth.bore * mouth.bore * angle(perp_dot(p, q), dot(p, q));
+}
+
+// The angle whose sine and cosine are in the ratio of these, from -π to π; 0 where both are 0. To 2e-8 of it, which
+// atan2 does not promise: Abramowitz and Stegun 4.4.50.
+fn angle(sine: f32, cosine: f32) -> f32 {
+    let low = min(abs(sine), abs(cosine));
+    let high = max(abs(sine), abs(cosine));
+    if high == 0.0 {
+        return 0.0;
+    }
+    let x = low / high;
+    let s = x * x;
+    let more = 0.1065626393 + s * (-0.0752896400 + s * (0.0429096138 + s * (-0.0161657367 + s * 0.0028662257)));
+    var turned = x * (1.0 + s * (-0.3333314528 + s * (0.1999355085 + s * (-0.1420889944 + s * more))));
+    turned = select(turned, 1.57079632679 - turned, abs(sine) > abs(cosine));
+    turned = select(turned, 3.14159265359 - turned, cosine < 0.0);
+    return select(turned, -turned, sine < 0.0);
+}
+
+// The share of a face that is in the disc of the mouth, seen along its axis: share_in_disc in crates/tools.
+fn share_in_disc(corners: array<vec2<f32>, 4>) -> f32 {
+    var places = corners;
+    let square = mouth.bore * mouth.bore;
+    var area = 0.0;
+    var inside = 0.0;
+    var meets = false;
+    var is_within = true;
+    for (var side = 0u; side < 4u; side++) {
+        let p = places[side];
+        let q = places[(side + 1u) % 4u];
+        let d = q - p;
+        let a = dot(d, d);
+        area += 0.5 * perp_dot(p, q);
+        is_within &= dot(p, p) <= square;
+        if a == 0.0 {
+            continue;
+        }
+        // |p + t d|² = r²
+        let b = dot(p, d);
+        let root = sqrt(max(b * b - a * (dot(p, p) - square), 0.0));
+        let enters = clamp((-b - root) / a, 0.0, 1.0);
+        let leaves = clamp((-b + root) / a, 0.0, 1.0);
+        if enters >= leaves {
+            inside += sector(p, q);
+            continue;
+        }
+        meets = true;
+        let u = p + d * enters;
+        let v = p + d * leaves;
+        inside += 0.5 * perp_dot(u, v);
+        if enters > 0.0 {
+            inside += sector(p, u);
+        }
+        if leaves < 1.0 {
+            inside += sector(v, q);
+        }
+    }
+    if !(area > 0.0) {
+        return 0.0;
+    }
+    if is_within {
+        return 1.0;
+    }
+    // no side crosses the edge of the disc: all of that is within, or nothing, but for rounding
+    if !meets {
+        inside = select(0.0, mouth.area, inside > 0.5 * mouth.area);
+    }
+    return clamp(inside / area, 0.0, 1.0);
 }
 
 // What share of the face is in the mouth.
@@ -40,34 +90,21 @@ fn sucked_share(face: u32) -> f32 {
             return 0.0;
         }
     }
-    let rows = array<vec4<f32>, 3>(
-        step.signals[mouth.pose], step.signals[mouth.pose + 1u], step.signals[mouth.pose + 2u]);
-    let origin = vec3<f32>(rows[0].w, rows[1].w, rows[2].w);
-    let corners = select(4u, 3u, faces[at + 2u] == faces[at + 3u]);
-    var inside = 0.0;
-    var sizes = 0.0;
-    var height = 0.0;
-    var places: array<vec2<f32>, 4>; // across the axis; a triangle's last corner twice
-    for (var corner = 0u; corner < corners; corner++) {
-        let x = place_of(faces[at + corner]) - origin;
-        let y = x.x * rows[0].xyz + x.y * rows[1].xyz + x.z * rows[2].xyz;
-        places[corner] = y.xy;
-        places[3] = y.xy;
-        let off = mouth.bore - length(y.xy);
-        inside += max(off, 0.0);
-        sizes += abs(off);
-        height += y.z;
-    }
-    let across = places[2] - places[0];
-    let other = places[3] - places[1];
-    // a face that is turned away is on the far side of the tissue, or of a hole in it
-    if across.x * other.y <= across.y * other.x {
+    let of_face = corners_of(face);
+    if !(abs(centroid(of_face).z) <= mouth.reach) {
         return 0.0;
     }
-    if abs(height) > mouth.reach * f32(corners) || inside <= 0.0 {
+    let twice = cross(of_face.places[2] - of_face.places[0], of_face.places[3] - of_face.places[1]);
+    // of what has no area, and what is turned away on the far side of the tissue or of a hole in it, nothing
+    if !(twice.z > 0.0) {
         return 0.0;
     }
-    return inside / sizes;
+    let turned = min(twice.z / (STEEP * length(twice)), 1.0);
+    var places: array<vec2<f32>, 4>; // across the axis
+    for (var corner = 0u; corner < 4u; corner++) {
+        places[corner] = of_face.places[corner].xy;
+    }
+    return share_in_disc(places) * turned;
 }
 
 @compute @workgroup_size(64)
@@ -76,5 +113,5 @@ fn suction_mouth(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     if face >= mouth.faces || !criterion_due() {
         return;
     }
-    suction_marks[mouth.first + face] = bitcast<u32>(sucked_share(face));
+    shares_in_mouth[face] = sucked_share(face);
 }

@@ -1,18 +1,5 @@
-// Marks the nodes of the faces that suction_mouth.wgsl has marked. criterion_due is generated.
-struct SuctionMouth {
-    faces: u32,
-    nodes: u32,
-    parts: u32,
-    first: u32,
-    numbers: u32,
-    pose: u32,
-    pressure: u32,
-    bore: f32,
-    reach: f32,
-    delay: f32,
-    area: f32,
-}
-@group(0) @binding(0) var<uniform> mouth: SuctionMouth;
+// Marks the nodes of the faces that suction_mouth.wgsl has marked. criterion_due is generated, the mouth is in
+// suction_tool.wgsl.
 @group(0) @binding(1) var<storage, read_write> suction_marks: array<u32>;
 @group(0) @binding(2) var<storage, read> faces_of_nodes: array<u32>; // where each node's begin, then they
 

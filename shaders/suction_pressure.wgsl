@@ -1,19 +1,5 @@
 // The share of the mouth that the faces close which suction_mouth.wgsl has marked, and the pressure that follows it.
-// One workgroup; criterion_due is generated.
-struct SuctionMouth {
-    faces: u32,
-    nodes: u32,
-    parts: u32,
-    first: u32,
-    numbers: u32,
-    pose: u32,
-    pressure: u32,
-    bore: f32,
-    reach: f32,
-    delay: f32,
-    area: f32,
-}
-@group(0) @binding(0) var<uniform> mouth: SuctionMouth;
+// One workgroup; criterion_due is generated, the mouth is in suction_tool.wgsl.
 @group(0) @binding(1) var<storage, read_write> suction_marks: array<u32>;
 @group(0) @binding(2) var<storage, read> parts: array<u32>; // six each: nodes, face, weight
 @group(0) @binding(3) var<storage, read> rest_points: array<f32>; // of nodes, from the reference (m)

@@ -8,8 +8,9 @@ fn meeting_with(triangle: u32) -> u32 {
     return meeting(surface.body, surface_faces[8u * triangle + 6u]);
 }
 
-fn thickness_of(triangle: u32) -> f32 {
-    return meeting_number(meeting_with(triangle), 3u);
+// The smaller edge of both bodies (m).
+fn edge_with(triangle: u32) -> f32 {
+    return meeting_number(meeting_with(triangle), EDGE);
 }
 
 // Whether a triangle may be in a point's way at all: where lists do not hold, that is not known from them.
@@ -36,7 +37,8 @@ fn may_meet(point: u32, triangle: u32) -> bool {
 // What a point faces that sees a face near its rim; twin of src/contact/rims.rs.
 fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing) -> Facing {
     let corners = corners_of(facing.triangle, point);
-    let near = ALIKE * surface.edge;
+    let edge = edge_with(facing.triangle);
+    let near = ALIKE * edge;
     let twice = length(cross(corners[1] - corners[0], corners[2] - corners[0]));
     let is_near_side = facing.weights.x * twice < near * length(corners[2] - corners[1])
         || facing.weights.y * twice < near * length(corners[0] - corners[2])
@@ -52,6 +54,9 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing) -> Faci
     var best = FAR;
     var least = -FAR;
     var flank = facing.triangle;
+    let on_it = 1e-3 * edge;
+    // two of the flanks that see the point, if there are so many
+    var seen_by = vec2<u32>(select(NONE, facing.triangle, outside > on_it), NONE);
     for (var corner = 0u; corner < 3u; corner++) {
         let node = surface_faces[8u * facing.triangle + corner];
         let starts = surface.around + node;
@@ -73,6 +78,13 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing) -> Faci
             }
             let turned = dot(own, other_normal);
             let turned_least = least_of_point(number, other_normal);
+            if -dot(of_other[0], other_normal) > on_it {
+                if seen_by.x == NONE {
+                    seen_by.x = other;
+                } else if seen_by.x != other {
+                    seen_by.y = other;
+                }
+            }
             if turned_least <= FLUSH && toward_least <= LOOKS {
                 let outside_of_other = -dot(of_other[0], other_normal);
                 if outside_of_other > -min(near, depth) && min(outside, outside_of_other) < near {
@@ -82,8 +94,8 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing) -> Faci
                 }
             } else if toward_least > FLUSH || turned_least > LOOKS {
                 least = max(least, turned);
-                if turned < toward - TURNED_AWAY && turned + distance / surface.edge < best {
-                    best = turned + distance / surface.edge;
+                if turned < toward - TURNED_AWAY && turned + distance / edge < best {
+                    best = turned + distance / edge;
                     flank = other;
                 }
             }
@@ -103,8 +115,11 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing) -> Faci
     // the place below the point, and how far beyond the rim that is
     faced.at = -faced.gap * faced.normal;
     let off = array<vec3<f32>, 3>(of_flank[0] - faced.at, of_flank[1] - faced.at, of_flank[2] - faced.at);
-    let beyond = length(nearest(off).at);
-    let on_it = 1e-3 * surface.edge;
+    var beyond = length(nearest(off).at);
+    // the wall of a face that leans is behind itself: what no other flank sees is in the body
+    if (seen_by.x == NONE || seen_by.x == flank) && (seen_by.y == NONE || seen_by.y == flank) {
+        beyond = 0.0;
+    }
     if beyond >= on_it && flank == facing.triangle && faced.gap > beyond {
         return facing;
     }
@@ -119,8 +134,21 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing) -> Faci
 
 // Whether two faces are walls of a corner that the point is in, and the first is not behind the second.
 fn is_corner(first: Facing, second: Facing, point: vec3<f32>) -> bool {
-    let is_before = dot(second.normal, first.at - second.at) > -ALIKE * surface.edge;
-    return dot(first.normal, second.normal) < CORNER && is_before && rises(first, second, point);
+    let edge = min(edge_with(first.triangle), edge_with(second.triangle));
+    let is_before = dot(second.normal, first.at - second.at) > -ALIKE * edge;
+    return dot(first.normal, second.normal) < CORNER && is_before && rises(first, second, point, edge);
+}
+
+// How little a face is in a point's way.
+fn in_way(facing: Facing, edge: f32) -> f32 {
+    let inside = max(-facing.gap, 0.0) + ALIKE * edge;
+    return max(facing.gap, 0.0) + inside * (1.0 + TURNED_AWAY + facing.turned);
+}
+
+// Whether a face is more in a point's way than another.
+fn is_more_in_way(facing: Facing, other: Facing) -> bool {
+    let edge = min(edge_with(facing.triangle), edge_with(other.triangle));
+    return in_way(facing, edge) < in_way(other, edge);
 }
 
 struct Faced {
@@ -134,7 +162,7 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
     let all = surface.list + surface.items + 1u;
     let begin = select(0u, surface_lists[starts], hold);
     let end = select(surface.triangles, surface_lists[starts + 1u], hold);
-    let reach_without = reach_of_step();
+    let largest = largest_step();
     var both: Faced;
     both.first.there = false;
     both.second.there = false;
@@ -149,13 +177,13 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
         }
         let corners = corners_of(triangle, point);
         let found = nearest(corners);
-        let reach = reach_without + thickness_of(triangle);
+        let reach = reach_of(meeting_with(triangle), largest);
         let depth = bitcast<f32>(surface_faces[8u * triangle + 7u]);
         // no number is near nothing
         if !(length(found.at) <= max(reach, depth)) {
             continue;
         }
-        var facing = outside(triangle, point, corners, found);
+        var facing = outside(triangle, point, corners, found, 1e-3 * edge_with(triangle));
         if !facing.there || !(facing.gap >= -depth && facing.gap <= reach) {
             continue;
         }
@@ -167,18 +195,16 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
         if surface_faces[8u * triangle + 6u] != surface.body || dot(facing.normal, own) < TURNED_AWAY {
             facing = at_rim(number, point, own, facing);
         }
-        let turned = dot(facing.normal, own);
-        if !facing.there || turned >= TURNED_AWAY {
+        facing.turned = dot(facing.normal, own);
+        if !facing.there || facing.turned >= TURNED_AWAY {
             continue;
         }
-        let inside = max(-facing.gap, 0.0) + ALIKE * surface.edge;
-        facing.way = max(facing.gap, 0.0) + inside * (1.0 + TURNED_AWAY + turned);
-        if !both.first.there || facing.way < both.first.way {
+        if !both.first.there || is_more_in_way(facing, both.first) {
             if both.first.there && is_corner(facing, both.first, point) {
                 both.second = both.first;
             }
             both.first = facing;
-        } else if !both.second.there || facing.way < both.second.way {
+        } else if !both.second.there || is_more_in_way(facing, both.second) {
             both.second = facing;
         }
         both.second.there = both.second.there && is_corner(both.first, both.second, point);
@@ -201,26 +227,27 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     let state = surface_touch[at + 4u];
     let gap_before = surface_touch[at + 5u];
     let friction_word = select(2u, 1u, state == STICKS);
-    let settling = settling_of_step();
-    let within = SHARES * surface.edge;
     begin_none(2u * point);
     begin_none(2u * point + 1u);
     var allowed = 0.0;
     var outside_by = 0.0;
     if both.first.there {
         let meets = meeting_with(both.first.triangle);
+        let edge = meeting_number(meets, EDGE);
+        let settling = settling_of_step(meets);
         let parts = parts_of(point, both.first, place);
         outside_by = gap_of(both.first, parts, place) - meeting_number(meets, 3u);
         var expected = 0.0;
         if state == FACES {
             expected = gap_before - 2.0 * largest_step();
         } else if state != FREE {
-            expected = gap_before;
+            // as far as it went, and not as was foreseen: tools may have held what it touches
+            expected = gap_before + dot(both.first.normal, goes(parts, LAST));
         }
         allowed = max(min(before + min(outside_by - expected, 0.0) + settling, 0.0), min(outside_by, 0.0));
-        let gap = max(outside_by - allowed, -OUT * surface.edge);
+        let gap = max(outside_by - allowed, -OUT * edge);
         let friction = meeting_number(meets, friction_word);
-        let begun = Begun(both.first.normal, gap, outside_by, allowed, within, friction, slip);
+        let begun = Begun(both.first.normal, gap, outside_by, allowed, SHARES * edge, friction, slip);
         if meets_it(meets, parts, begun) {
             begin(2u * point, meets, parts, begun);
         }
@@ -228,6 +255,8 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     if both.second.there {
         // of another face nothing is known of how the point got there
         let meets = meeting_with(both.second.triangle);
+        let settling = settling_of_step(meets);
+        let within = SHARES * meeting_number(meets, EDGE);
         let parts = parts_of(point, both.second, place);
         let second = gap_of(both.second, parts, place) - meeting_number(meets, 3u);
         let friction = meeting_number(meets, friction_word);

@@ -38,13 +38,19 @@ fn goes(parts: Parts, of_nodes: u32) -> vec3<f32> {
     return sum;
 }
 
+// How far faces and edges of two bodies are looked at when the fastest node goes so far in a step (m).
+fn reach_of(meets: u32, largest: f32) -> f32 {
+    return 4.0 * largest + meeting_number(meets, MARGIN) + meeting_number(meets, 3u);
+}
+
 // How far points that are inside and may be come out in this step (m).
-fn settling_of_step() -> f32 {
+fn settling_of_step(meets: u32) -> f32 {
     if surface.relaxed != 0u {
         return FAR;
     }
-    let settling = surface.settling * step.time_step;
-    return select(settling, 0.01 * settling, step.time * surface.settling >= 0.5 * surface.edge);
+    let speed = meeting_number(meets, SETTLING);
+    let settling = speed * step.time_step;
+    return select(settling, 0.01 * settling, step.time * speed >= 0.5 * meeting_number(meets, EDGE));
 }
 
 fn begin_none(contact: u32) {
@@ -75,9 +81,8 @@ fn begin(contact: u32, meets: u32, parts: Parts, begun: Begun) {
     set_vector(contact, SLIP, begun.slip);
     set_number(contact, PRESSING, 0.0);
     set_vector(contact, RUBBING, vec3<f32>(0.0));
-    set_number(contact, OUTSIDE, begun.outside);
     let at = CONTACT_WORDS * contact;
-    surface_contacts[at + SLIDING] = 0u;
+    surface_contacts[at + SLIDING] = 1u; // what nothing holds
     for (var part = 0u; part < PARTS; part++) {
         surface_contacts[at + PART + part] = parts.nodes[part];
         surface_contacts[at + PART + PARTS + part] = bitcast<u32>(parts.weights[part]);

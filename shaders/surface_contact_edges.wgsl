@@ -49,7 +49,7 @@ fn may_cross(one: u32, other: u32, meets: u32) -> bool {
             return false;
         }
     }
-    return distance_at_rest(one, other) > NEAR_AT_REST * (meeting_number(meets, 3u) + surface.margin);
+    return distance_at_rest(one, other) > NEAR_AT_REST * (meeting_number(meets, 3u) + meeting_number(meets, MARGIN));
 }
 
 // Which way the triangles beside an edge look.
@@ -134,8 +134,7 @@ fn surface_contact_edges(@builtin(global_invocation_id) id: vec3<u32>, @builtin(
     let all = surface.list + surface.items + 1u;
     let begin_at = select(one + 1u, surface_lists[surface.list + item], hold);
     let end = select(surface.items - surface.points, surface_lists[surface.list + item + 1u], hold);
-    let reach_without = reach_of_step();
-    let settling = settling_of_step();
+    let largest = largest_step();
     var contact = own.x;
     for (var place = begin_at; place < end; place++) {
         var other = place;
@@ -147,7 +146,7 @@ fn surface_contact_edges(@builtin(global_invocation_id) id: vec3<u32>, @builtin(
             continue;
         }
         let thickness = meeting_number(meets, 3u);
-        let found = crossing(one, other, reach_without + thickness);
+        let found = crossing(one, other, reach_of(meets, largest));
         if !found.there {
             continue;
         }
@@ -166,6 +165,7 @@ fn surface_contact_edges(@builtin(global_invocation_id) id: vec3<u32>, @builtin(
         // nothing is known of how it got there, nor of how it slipped
         let outside = found.gap - thickness;
         let friction = meeting_number(meets, 2u);
+        let settling = settling_of_step(meets);
         let begun = Begun(found.normal, max(outside, -settling), outside, 0.0, 0.0, friction, vec3<f32>(0.0));
         if !meets_it(meets, parts, begun) {
             continue;

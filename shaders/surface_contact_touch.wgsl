@@ -1,4 +1,4 @@
-// Notes what contacts between surfaces came to, a thread a point: slip, gap, length slid and what is lost. touch_of is
+// Notes what contacts between surfaces came to, a thread a point: slip, length slid and what is lost. touch_of is
 // generated; note_edges is in surface_touch_edges.wgsl, or generated.
 @group(0) @binding(0) var<storage, read_write> surface_touch: array<f32>;
 
@@ -20,7 +20,6 @@ fn note(contact: u32, at: u32, is_first: bool) {
         surface_touch[at + 1u] = slip.y;
         surface_touch[at + 2u] = slip.z;
         surface_touch[at + 4u] = select(STICKS, SLIDES, slides);
-        surface_touch[at + 5u] = number(contact, OUTSIDE) + dot(normal, after);
     }
     if surface.relaxed == 0u {
         let force = pressing * normal + vector(contact, RUBBING);

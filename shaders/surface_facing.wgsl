@@ -19,7 +19,7 @@ struct Facing {
     at: vec3<f32>,
     normal: vec3<f32>,
     gap: f32,
-    way: f32, // how much it is in the point's way: the less, the more
+    turned: f32, // the cosine between its normal and the point's own
     there: bool,
 }
 
@@ -120,8 +120,8 @@ fn is_closer(other: u32, triangle: u32, point: vec3<f32>, distance: f32) -> bool
     return length(nearest(corners_of(other, point)).at) < (1.0 - 1e-6) * distance - surface.rounding;
 }
 
-// How far a point is outside of a triangle.
-fn outside(triangle: u32, point: vec3<f32>, corners: array<vec3<f32>, 3>, found: OnTriangle) -> Facing {
+// How far a point is outside of a triangle that it is on if it is so near (m).
+fn outside(triangle: u32, point: vec3<f32>, corners: array<vec3<f32>, 3>, found: OnTriangle, on_it: f32) -> Facing {
     var facing: Facing;
     facing.there = false;
     let normal = normal_of(corners);
@@ -136,7 +136,7 @@ fn outside(triangle: u32, point: vec3<f32>, corners: array<vec3<f32>, 3>, found:
     facing.normal = normal;
     facing.gap = -dot(found.at, normal);
     facing.there = true;
-    if found.part == 0u || distance <= 1e-3 * surface.edge {
+    if found.part == 0u || distance <= on_it {
         return facing;
     }
     var around = normal;

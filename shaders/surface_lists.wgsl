@@ -21,12 +21,10 @@ struct SurfaceContact {
     list: u32, // where in surface_lists are: starts of what is near each item (triangles, of edges edges), and these
     inverse: u32, // starts of the items that may have contacts at a node, and these
     displacements: u32, // when the lists were made (m)
-    edge: f32, // (m)
-    settling: f32, // how fast points come out that begin inside (m/s)
-    margin: f32, // how far triangles are looked at beyond thickness and motion (m)
+    margin: f32, // how far triangles are looked at beyond thickness and motion, at most (m)
     rounding: f32, // of a place, and more (m)
     thickness: f32, // the largest (m)
-    depth: f32, // the deepest inside (m)
+    depth: f32, // the deepest inside of the shallowest body (m): of others more is in lists
     relaxed: u32, // whether it is a static analysis
 }
 @group(0) @binding(0) var<uniform> surface: SurfaceContact;
@@ -34,8 +32,12 @@ struct SurfaceContact {
 // the radius (m), whether contacts of edges lie as what is near them, and what is said above
 @group(0) @binding(0) var<storage, read> surface_lists: array<u32>;
 
-// of two bodies: what meets, friction that sticks and slides, thickness, share and damping of a spring
-const MEETING_WORDS: u32 = 6u;
+// of two bodies: what meets, friction that sticks and slides, thickness, share and damping of a spring, the smaller
+// edge of both, how far triangles are looked at beyond thickness and motion, how fast points come out that begin inside
+const MEETING_WORDS: u32 = 9u;
+const EDGE: u32 = 6u; // (m)
+const MARGIN: u32 = 7u; // (m)
+const SETTLING: u32 = 8u; // (m/s)
 const NODES_MEET: u32 = 1u;
 const FACES_MEET: u32 = 2u;
 const EDGES_MEET: u32 = 4u;
@@ -48,14 +50,11 @@ fn largest_step() -> f32 {
     return sqrt(bitcast<f32>(motion(step.number & 1u)));
 }
 
-fn reach_of_step() -> f32 {
-    return 4.0 * largest_step() + surface.margin;
-}
-
 // Whether all that may be near is in the lists. If not, everything is gone through: slow, and right.
 fn lists_hold() -> bool {
     let nearer = 2.0 * sqrt(bitcast<f32>(motion(2u + (step.number & 1u))));
-    let farthest = max(surface.thickness + reach_of_step(), surface.depth);
+    let reach = 4.0 * largest_step() + surface.margin;
+    let farthest = max(surface.thickness + reach, surface.depth);
     return 1.0001 * (farthest + nearer) <= bitcast<f32>(surface_lists[0]);
 }
 

@@ -1,7 +1,7 @@
 // A point of a face that may meet others, in surface_contact.wgsl; twin of src/contact/face_points.rs. A node is in
 // surface_point_node.wgsl.
 const MEETS: u32 = FACES_MEET;
-const SHARES: f32 = 1e-3; // nearer than this to touching points share the masses of their nodes, in edges
+const SHARES: f32 = 1e-3; // nearer than this to touching points share the masses of their nodes, in smaller edges
 const STEPS: u32 = 4u; // of Newton's from the middle of a quadrilateral
 
 fn face_point(point: u32) -> u32 {
@@ -41,10 +41,10 @@ fn is_of_point(point: u32, triangle: u32) -> bool {
 
 // Whether a second face, that is turned otherwise, rises before the first: it is a wall of a corner. A point of a face
 // is never on an edge, and a wall that falls off beside it would push it along the face.
-fn rises(first: Facing, second: Facing, point: vec3<f32>) -> bool {
+fn rises(first: Facing, second: Facing, point: vec3<f32>, edge: f32) -> bool {
     var corners = corners_of(second.triangle, point);
     for (var corner = 0u; corner < 3u; corner++) {
-        if dot(first.normal, corners[corner] - first.at) > ALIKE * surface.edge {
+        if dot(first.normal, corners[corner] - first.at) > ALIKE * edge {
             return true;
         }
     }

@@ -28,7 +28,7 @@ fn is_of_point(point: u32, triangle: u32) -> bool {
 }
 
 // Whether a second face, that is turned otherwise, rises before the first: it is a wall of a corner.
-fn rises(first: Facing, second: Facing, point: vec3<f32>) -> bool {
+fn rises(first: Facing, second: Facing, point: vec3<f32>, edge: f32) -> bool {
     return dot(first.normal, second.at - first.at) > 0.0;
 }
 

@@ -1,5 +1,6 @@
 // Rigid tools keep nodes outside; twin of systems/tool_contact.rs. TOOLS and NUMBERS are generated; tools are in
-// tool_row.wgsl, foresee in foreseen.wgsl, spring_gap in contact_spring.wgsl.
+// tool_row.wgsl, foresee in foreseen.wgsl, spring_gap in contact_spring.wgsl, note_farther in
+// contact_farther.wgsl or generated.
 struct Limits {
     edge: f32, // who is farther off cannot be there within a step (m)
     settling: f32, // how fast nodes inside a tool come out (m/s); in a static analysis a tenth of an edge a step
@@ -200,6 +201,9 @@ fn tool_contact(i: u32, node: u32) {
         }
     }
     let d = predicted + sum;
+    if limits.counts_work != 0u {
+        note_farther(node, sum);
+    }
     var load = vec3<f32>(0.0);
     for (var tool = 0u; tool < TOOLS; tool++) {
         if !found[tool].touches || found[tool].push <= 0.0 {
@@ -220,7 +224,7 @@ fn tool_contact(i: u32, node: u32) {
         }
         if limits.counts_work != 0u {
             let work = step.work_factor * dot(force, found[tool].tool_step);
-            let on_node = step.work_factor * dot(force * free, 0.5 * (of_node.before + d));
+            let on_node = step.work_factor * dot(force, 0.5 * (of_node.before + d));
             tool_touch[at_tool + 4u] += length(along_surface(d - found[tool].tool_step, found[tool].normal));
             tool_touch[at_tool + 5u] += work;
             tool_touch[at_tool + 6u] += work - on_node;

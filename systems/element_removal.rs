@@ -1,20 +1,23 @@
 //! `element_removal`: takes elements away. `shaders/element_removal.wgsl` and `shaders/node_mass.wgsl` are its twins.
 
+mod masses;
+
 use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::block_kernel::BlockKernels;
 use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK};
-use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
+use crate::backend::kernel::{Kernel, Uniform, uniform};
 use crate::backend::step::with_step;
 use crate::components::*;
 use crate::elements::Element;
 use crate::elements::{mass_shares, with_element_of};
 use crate::error::{Error, missing};
-use crate::evaluation::{BlockView, ElementState, add_nodal_masses, deactivate};
+use crate::evaluation::{BlockView, ElementState, deactivate};
 use crate::math::lane_place;
 use crate::shader;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+use masses::{mass_kernel, recompute};
 use std::borrow::Cow;
 use std::sync::{Mutex, PoisonError};
 
@@ -23,9 +26,9 @@ use std::sync::{Mutex, PoisonError};
 pub const CRITERION_STEPS: u64 = 10;
 
 /// At the end of a step, elements go whose time has come or that pass a limit. Their volume and hourglass stiffness
-/// become zero, so that they exert nothing; what their nodes weigh is summed anew, and nodes without elements are
-/// inactive; faces of removed elements bear no load. The energy and momentum they had are counted, and what of the
-/// energy constraints had given.
+/// become zero, so that they exert nothing; what their nodes weigh is summed anew, and what they move with where mass
+/// is scaled, and nodes without elements are inactive; faces of removed elements bear no load. The energy and momentum
+/// they had are counted, and what of the energy constraints had given.
 pub fn system() -> System {
     System::built_in(
         "element_removal",
@@ -52,6 +55,7 @@ type BlockQuery<'a> = (
     &'a mut RemovedEnergy,
     &'a mut RemovedWork,
     &'a mut RemovedMomentum,
+    Option<&'a AddedMass>,
 );
 
 type BodyQuery<'a> = (
@@ -61,10 +65,11 @@ type BodyQuery<'a> = (
     &'a ConstrainedAxes,
     &'a mut Mass,
     Option<&'a mut DampingCoefficient>,
+    Option<&'a mut InertialMass>,
 );
 
 /// Of a block that loses no elements, what it weighs by.
-type StayingBlock<'a> = (&'a Block, &'a Connectivity, &'a RestShape);
+type StayingBlock<'a> = (&'a Block, &'a Connectivity, &'a RestShape, Option<&'a AddedMass>);
 
 fn element_removal(
     clock: Res<Clock>,
@@ -92,6 +97,7 @@ fn element_removal(
         mut energies,
         mut given,
         mut momenta,
+        _,
     ) in &mut blocks
     {
         let Ok((_, displacement, step, axes, ..)) = bodies.get(block.body) else {
@@ -140,10 +146,11 @@ fn element_removal(
         }
     }
     for body in touched {
-        let Ok((authoring, .., mut mass, mut damping)) = bodies.get_mut(body) else {
+        let Ok((authoring, .., mut mass, mut damping, mut inertia)) = bodies.get_mut(body) else {
             return Err(missing("a column of a body"));
         };
-        recompute_masses(authoring, (&blocks, &others), &densities, &mut mass, damping.as_deref_mut())?;
+        let further = (damping.as_deref_mut(), inertia.as_deref_mut());
+        recompute(authoring, (&blocks, &others), &densities, &mut mass, further)?;
         // elements of blocks that lose none are always there
         let alive = |(block, row): (u32, u32)| {
             let block = authoring.blocks.get(block as usize).and_then(|&block| blocks.get(block).ok());
@@ -199,53 +206,12 @@ fn motion(state: &ElementState, density: f64, (step, axes): (&Reals, &[u32]), ti
     (energy(all), energy(constrained), mass / time_step * mean)
 }
 
-/// Sums the mass and damping of a body's nodes from the elements that are left.
-fn recompute_masses(
-    authoring: &Authoring,
-    (blocks, others): (&Query<BlockQuery>, &Query<StayingBlock, Without<Alive>>),
-    materials: &Query<(&Density, Option<&Damping>)>,
-    mass: &mut Mass,
-    damping: Option<&mut DampingCoefficient>,
-) -> Result<(), Error> {
-    let count = mass.len();
-    let (mut masses, mut coefficients) = (vec![0.0; count], vec![0.0; count]);
-    let parts = |&entity: &Entity| match blocks.get(entity) {
-        Ok((_, block, connectivity, shape, ..)) => Some((block, connectivity, shape)),
-        // those that lose no elements weigh, too
-        Err(_) => others.get(entity).ok(),
-    };
-    for (block, connectivity, shape) in authoring.blocks.iter().filter_map(parts) {
-        let Ok((density, rate)) = materials.get(block.material) else {
-            return Err(missing("a column of a body"));
-        };
-        let rate = rate.map_or(0.0, |rate| rate.0);
-        // densities of copies do not differ where elements are removed
-        let inertia = ElementInertia::of_all(density.0, rate);
-        add_nodal_masses(block, connectivity, shape, inertia, &mut masses, &mut coefficients);
-    }
-    (0..count).for_each(|node| mass.set(node, masses[node]));
-    if let Some(damping) = damping {
-        (0..count).for_each(|node| damping.set(node, coefficients[node]));
-    }
-    Ok(())
-}
-
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 struct Removal {
     density: f32,
 }
 uniform!(Removal { density });
-
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-struct NodeMass {
-    count: u32,
-    first: u32,
-    density: f32,
-    rate: f32,
-}
-uniform!(NodeMass { count, first, density, rate });
 
 /// For each block that may lose elements: what finds those that pass a limit, and what takes away those that are due.
 /// Then for each of the body's blocks what its nodes weigh.
@@ -346,47 +312,4 @@ fn removal_kernel(block: &BlockKernels, buffers: &mut dyn Buffers) -> Kernel {
         .fragment(block.generated("extinction", text + "}\n"));
     let kernel = REMOVED.iter().fold(kernel, |k, &name| k.bind(name, buffers.column(block.entity, name)));
     block.with_energy(kernel, buffers)
-}
-
-fn mass_kernel(block: &BlockKernels, first: bool, world: &World, buffers: &mut dyn Buffers) -> Option<Kernel> {
-    let body = block.block.body;
-    let count = world.get::<Mass>(body)?.len();
-    let (starts, volumes, shares) = volumes_at_nodes(&block.block, world.get::<Connectivity>(block.entity)?, count);
-    let number = |value: Option<f64>| value.unwrap_or(0.0);
-    let density = number(world.get::<Density>(block.block.material).map(|density| density.0));
-    let rate = number(world.get::<Damping>(block.block.material).map(|damping| damping.0));
-    let part = NodeMass { count: count as u32, first: u32::from(first), density: density as f32, rate: rate as f32 };
-    let kernel = Kernel::new("node_mass", "node_mass")
-        .fragment(shader!("node_mass"))
-        .fragment(shader!("row"))
-        .bind_uniform::<NodeMass>("part", buffers.uniform("node_mass".into(), &part.bytes()))
-        .bind("starts", buffers.constants("starts of node_mass".into(), bytemuck::cast_slice(&starts)))
-        .bind("volumes", buffers.constants("volumes of node_mass".into(), bytemuck::cast_slice(&volumes)))
-        .bind("shares", buffers.constants("shares of node_mass".into(), bytemuck::cast_slice(&shares)))
-        .bind(RestShape::NAME, buffers.column(block.entity, RestShape::NAME))
-        .bind(Mass::NAME, buffers.column(body, Mass::NAME))
-        .threads(count as u32);
-    Some(if world.get::<DampingCoefficient>(body).is_some() {
-        let damping = buffers.column(body, DampingCoefficient::NAME);
-        kernel.fragment(shader!("node_damping")).bind(DampingCoefficient::NAME, damping)
-    } else {
-        kernel.fragment(Fragment::new("generated: no damping", "fn damp_node(node: u32, added: f32) {}\n"))
-    })
-}
-
-/// For each of a body's nodes the places, in the rest shapes of a block, of the volumes of the elements that meet
-/// there, and what share of their masses the node has.
-fn volumes_at_nodes(block: &Block, connectivity: &[u32], count: usize) -> (Vec<u32>, Vec<u32>, Vec<f32>) {
-    let shares = mass_shares(block.kind);
-    let mut pairs: Vec<(u32, u32, u8)> = Vec::with_capacity(block.count * shares.len());
-    for row in 0..block.count {
-        let place = with_element_of!(block, E => lane_place(row, E::ROWS, E::VOLUME_ROW)) as u32;
-        let node = |corner: usize| connectivity[lane_place(row, shares.len(), corner)];
-        pairs.extend((0..shares.len()).map(|corner| (node(corner), place, corner as u8)));
-    }
-    pairs.sort_unstable();
-    let start = |node: usize| pairs.partition_point(|&(of, ..)| (of as usize) < node) as u32;
-    let starts = (0..=count).map(start).collect();
-    let share = |&(.., corner): &(u32, u32, u8)| shares[usize::from(corner)] as f32;
-    (starts, pairs.iter().map(|&(_, place, _)| place).collect(), pairs.iter().map(share).collect())
 }

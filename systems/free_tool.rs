@@ -3,7 +3,7 @@
 mod contacts;
 
 use super::grasp::Grip;
-use super::node_slices::{NodeSlices, SlicedColumns, vector};
+use super::node_slices::{MetColumns, NodeSlices, SlicedColumns, note_farther};
 use super::repeat::Repeat;
 use super::system::{Phase, System};
 use crate::backend::cpu::{Foreseen, IntegrationCoefficients};
@@ -52,6 +52,7 @@ struct TouchedColumns {
     nodes: SlicedColumns,
     /// Where tools may hold its nodes.
     grip: Option<(&'static Grasps, &'static ToolHold)>,
+    met: MetColumns,
 }
 
 /// A tool in a step.
@@ -110,6 +111,9 @@ fn free_tool(
     }
     for (tool, state) in tools.all.iter().zip(&mut motions.all) {
         let step = ToolStep::new(tool, state.motion, &clock, &signals);
+        let worked = state.work_of_half(tool, clock.time_step, |body, row| {
+            bodies.get(body).map_or(DVec3::ZERO, |columns| columns.nodes.step.vector(row))
+        });
         let near = step.near((tools.reference, &signals), &mut bodies, &state.touches);
         let fault = step.fault(&near);
         let Solved { velocity, momentum, touches } = contacts::solve(&step, near);
@@ -117,15 +121,19 @@ fn free_tool(
         if let Some((body, what, criterion)) = fault.or_else(|| not_finite(tool, &next)) {
             return Err(broken(&clock, observer.as_deref(), body, what, criterion));
         }
-        step.count(state, &next, &touches);
-        for (touch, _) in &touches {
+        step.count(state, &next, (&touches, worked));
+        let work_factor = step.coefficients.work_factor;
+        for (touch, foreseen) in &touches {
             if let Ok(mut columns) = bodies.get_mut(tool.meets[touch.node.0 as usize].body) {
                 let row = touch.node.1 as usize;
                 let load = columns.nodes.external.vector(row) + touch.force;
                 columns.nodes.external.set_vector(row, load);
+                let farther = foreseen.free * touch.force / foreseen.to_force;
+                note_farther(&mut columns.met, row, farther, work_factor);
             }
         }
         state.touches = touches.into_iter().map(|(touch, _)| touch).collect();
+        state.note_slips();
         state.motion = next.after(step.response.time_step, &tool.inertia);
     }
     Ok(())
@@ -155,28 +163,33 @@ impl ToolStep<'_> {
     fn near_of<T: Scalar>(
         &self,
         (reference, signals): (DVec3, &Signals),
-        TouchedColumnsItem { nodes, grip }: TouchedColumnsItem<'_, '_>,
+        TouchedColumnsItem { nodes, grip, .. }: TouchedColumnsItem<'_, '_>,
         (number, touched): (usize, &[FreeTouch]),
         all: &mut Vec<Near>,
     ) {
         let (tool, time_step) = (self.tool, self.response.time_step);
         let Some((center, radius)) = tool.geometry.bounding_sphere() else { return };
         let center = tool.pose(&self.free.after(time_step, &tool.inertia)).place(center);
+        // what comes to touch a tool that sticks is held as that is
+        let sticks = touched.iter().any(|touch| touch.sticks);
         let (met, first) = (&tool.meets[number], all.len());
         let reach = (radius + met.edge) * (radius + met.edge);
         let nodes = NodeSlices::<T>::of(nodes);
         for &row in &met.rows {
             let (at, node) = (row as usize, (number as u32, row));
-            let place = nodes.rest[at] - reference + vector(nodes.u, at);
+            let place = nodes.rest[at] - reference + nodes.displacement(at);
             if center.distance_squared(place) > reach || nodes.mass[at].to_f64() <= 0.0 {
                 continue;
             }
             let foreseen = nodes.foresee(at, &self.coefficients);
             // what touched is in the order of nodes
-            let stuck = touched.binary_search_by_key(&node, |touch| touch.node).is_ok_and(|i| touched[i].sticks);
+            let known = touched.binary_search_by_key(&node, |touch| touch.node);
+            let known = known.ok().map(|place| &touched[place]);
+            let stuck = known.map_or(sticks, |touch| touch.sticks);
             let friction = met.friction[usize::from(!stuck)];
             let (arm, out) = (place - self.before.place, met.settling * time_step);
-            all.push(Near { node, place, foreseen, arm, friction, edge: met.edge, swept: met.swept, out });
+            let target = known.map(|touch| touch.target);
+            all.push(Near { node, place, foreseen, arm, friction, edge: met.edge, swept: met.swept, target, out });
         }
         let Some(grip) = grip.map(Grip::<T>::of) else { return };
         let near = &mut all[first..];
@@ -188,20 +201,21 @@ impl ToolStep<'_> {
     }
 
     /// Counts what was done to the tool. With velocities of the middles before and after, forces do the work F · ½ (v +
-    /// v') h on it, h the time between the middles, exactly.
-    fn count(&self, state: &mut FreeMotion, next: &RigidMotion, touches: &[(FreeTouch, Foreseen)]) {
+    /// v') h on it, h the time between the middles, exactly. On nodes they do half of theirs in the last step, and half
+    /// in the next, which glue and other tools may change: of that the forces of the last step have done in it is told.
+    fn count(&self, state: &mut FreeMotion, next: &RigidMotion, (touches, worked): (&[(FreeTouch, Foreseen)], f64)) {
         let (before, inertia, coefficients) = (&self.before, &self.tool.inertia, &self.coefficients);
         let window = coefficients.force * coefficients.rate;
         let velocity = 0.5 * (before.velocity + next.velocity);
         let spin = 0.5 * (before.spin(inertia) + next.spin(inertia));
         let by_gravity = window * inertia.mass * self.gravity.dot(velocity);
-        let (mut on_tool, mut on_nodes) = (0.0, 0.0);
+        let (mut on_tool, mut on_nodes) = (0.0, worked);
         for (touch, node) in touches {
             on_tool -= window * touch.force.dot(velocity + spin.cross(touch.arm));
-            let end = node.step + node.free * touch.force / node.to_force;
             // on those that are moved as told, too: who moves them does as much less
-            on_nodes += coefficients.work_factor * touch.force.dot(0.5 * (node.before + end));
+            on_nodes += 0.5 * coefficients.work_factor * touch.force.dot(node.before);
         }
+        state.acted = coefficients.work_factor / coefficients.rate;
         state.gravity_work += by_gravity;
         state.contact_work += on_tool;
         state.contact_loss -= on_tool + on_nodes;

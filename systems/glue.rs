@@ -4,7 +4,7 @@ mod kernels;
 mod solved;
 mod work;
 
-use super::node_slices::{SlicedColumns, elements_stay};
+use super::node_slices::{MetColumns, SlicedColumns, elements_stay};
 use super::repeat::Repeat;
 use super::system::{Phase, System};
 use crate::backend::cpu::IntegrationCoefficients;
@@ -77,6 +77,7 @@ struct TiedColumns {
     nodes: SlicedColumns,
     /// Where tools may hold its nodes.
     grip: Option<(&'static Grasps, &'static ToolHold)>,
+    met: MetColumns,
     state: Option<&'static mut TieState>,
 }
 
@@ -128,14 +129,17 @@ fn step<T: Scalar>(
     // forces that are only tried leave everything as it is
     let noted = clock.springs.is_none_or(|springs| springs.forces.are_noted());
     let counts_work = clock.relaxation.is_none().then_some(coefficients.work_factor);
+    let counts_before = work_factor_before(clock, coefficients.work_factor);
     work.forces.fill(DVec3::ZERO);
     for (number, tie) in glue.ties.iter().enumerate().filter(|(number, _)| work.set.ties[*number].holds) {
         let solved = &work.set.ties[number];
         let Some(mut state) = state_of(tie, glue, bodies) else { continue };
         let at = TIE_NUMBERS * tie.place;
+        let counted_before = state.vector_at(at + 2) * counts_before;
         // in a static analysis nothing breaks: pseudo-steps are no way that bodies take
         let breaks_now = noted && counts_work.is_some() && tie.strength.is_exceeded(solved.force, work.outs[number]);
         if breaks_now && clock.springs.is_none() {
+            takes(&mut state, at, counted_before, solved.relative(&work.before));
             breaks(&mut state, at, BROKE, clock);
             continue;
         }
@@ -143,20 +147,20 @@ fn step<T: Scalar>(
         if !noted {
             continue;
         }
-        let force = mean_force(&state, at, solved.force, clock);
         state.set_vector_at(at + 2, solved.force);
         if breaks_now {
             // the step was found with its force
             breaks(&mut state, at, BROKE, clock);
         }
+        // what an explicit step comes to is only known after it: of the last one, both ends have their forces now
+        let (before, after) = (solved.relative(&work.before), solved.relative(&work.set.steps));
+        let relative = if clock.springs.is_some() { 0.5 * (before + after) } else { before };
         if let Some(work_factor) = counts_work {
-            let (before, after) = (solved.relative(&work.before), solved.relative(&work.set.steps));
-            let taken = -work_factor * force.dot(0.5 * (before + after));
-            let sum = state.get(at + 5) + taken;
-            state.set(at + 5, sum);
+            takes(&mut state, at, counted_before + solved.force * work_factor, relative);
         }
     }
-    work.push(glue, bodies);
+    // in implicit steps contact counts what it takes by where nodes have gone
+    work.push(glue, counts_work.filter(|_| clock.springs.is_none()), bodies);
     Ok(())
 }
 
@@ -164,9 +168,22 @@ fn state_of<'a>(tie: &TiedPoint, glue: &Glue, bodies: &'a mut Query<TiedColumns>
     bodies.get_mut(glue.bodies[tie.bodies[0]]).ok()?.state
 }
 
-/// The force (N) that works in a step: in an implicit one the mean of those at both ends.
-fn mean_force(state: &TieState, at: usize, force: DVec3, clock: &Clock) -> DVec3 {
-    if clock.springs.is_some() { 0.5 * (state.vector_at(at + 2) + force) } else { force }
+/// What is counted of the work of the last step's forces, by the factor of this step: they acted from the middle of a
+/// step to the middle of the next, in the first step for half as long, and Δt may have changed since. Of an implicit
+/// step forces at both ends count alike.
+fn work_factor_before(clock: &Clock, work_factor: f64) -> f64 {
+    if clock.springs.is_some() {
+        return work_factor;
+    }
+    let share = if clock.step == 1 { 0.5 } else { 1.0 };
+    share * (2.0 * work_factor - 1.0)
+}
+
+/// Counts what a tie takes in a step of its point against the face (m), by the sum of its forces at both ends (N), each
+/// as far as its work is counted.
+fn takes(state: &mut TieState, at: usize, forces: DVec3, step: DVec3) {
+    let sum = state.get(at + 5) - 0.5 * forces.dot(step);
+    state.set(at + 5, sum);
 }
 
 fn breaks(state: &mut TieState, at: usize, how: f64, clock: &Clock) {

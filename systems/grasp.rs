@@ -37,10 +37,6 @@ pub fn system() -> System {
     .on_nodes(stages)
 }
 
-/// What a closed tool and a node do.
-const HELD: f64 = 1.0;
-const WITHOUT: f64 = 2.0;
-
 /// What a step needs.
 pub struct GraspStep {
     /// Whether a solver holds the axes of nodes.
@@ -66,6 +62,7 @@ impl NodeSystem for Grasps {
     type Columns = (
         (&'static Mass, Option<&'static InertialMass>, Option<&'static DampingCoefficient>),
         (&'static InternalForce, &'static ConstrainedAxes, &'static Displacement, &'static DisplacementIncrement),
+        Option<&'static DisplacementCompensation>,
         (&'static mut ExternalForce, &'static mut ToolHold),
     );
     type Prepared = GraspStep;
@@ -128,28 +125,28 @@ impl Grasps {
         values: &mut [T],
     ) -> Option<DVec3> {
         let (grasp, ToolInStep { closed, pose, change }) = (&self.grasps[number], &step.tools[number]);
-        let open = values[3] == T::default();
+        let open = ToolHold::is_open(values[3].to_f64());
         if open && !closed {
             return ends;
         }
         values[..3].fill(T::default());
         if !closed {
-            values[3] = T::default();
+            values[3] = T::from_f64(ToolHold::opened(values[3].to_f64()));
             return ends;
         }
         if nodes.inertia()[row] <= T::default() {
             return ends;
         }
-        let place = nodes.rest[row] - self.reference + nodes.displacement(row);
+        let place = nodes.rest[row] - self.reference + nodes.exact_displacement(row);
         if open {
             let of_tool = pose.less(change).inverse(place);
             let within = |reach: f64| grasp.tool.geometry.distance(of_tool).0 <= reach;
-            values[3] = T::from_f64(if grasp.reach.is_none_or(within) { HELD } else { WITHOUT });
+            values[3] = T::from_f64(if grasp.reach.is_none_or(within) { ToolHold::HELD } else { ToolHold::WITHOUT });
             for (number, part) in values[6..9].iter_mut().zip(of_tool.to_array()) {
                 *number = T::from_f64(part);
             }
         }
-        if values[3] != T::from_f64(HELD) {
+        if values[3] != T::from_f64(ToolHold::HELD) {
             return ends;
         }
         if let Some(ends) = ends {
@@ -164,7 +161,7 @@ impl Grasps {
         let force = foreseen.to_force * gap;
         // to the end of the step it holds, as others have been told
         if force.length() > grasp.strength {
-            values[3] = T::from_f64(WITHOUT);
+            values[3] = T::from_f64(ToolHold::SLIPPED);
         }
         for i in 0..3 {
             values[i] = T::from_f64(force[i]);

@@ -12,9 +12,9 @@
 //! suture           SutureForce                  -> ExternalForce                          per sutured node
 //! grab             Displacement                 -> ExternalForce                          per held node
 //! surface_contact  forces, Displacement, ToolHold -> ExternalForce, ContactForce, SurfaceTouch per point that may touch
-//! glue             forces, Displacement         -> ExternalForce, TieState                per tie
-//! free_tool        forces, Displacement, motion -> ExternalForce, motion                  per free tool
-//! tool_contact     forces, Displacement, motion -> ExternalForce, ToolTouch               per node that may touch
+//! glue             forces, Displacement         -> ExternalForce, TieState, SurfaceTouch  per tie
+//! free_tool        forces, Displacement, motion -> ExternalForce, SurfaceTouch, motion    per free tool
+//! tool_contact     forces, Displacement, motion -> ExternalForce, ToolTouch, SurfaceTouch per node that may touch
 //! grasp            forces, Displacement, motion -> ExternalForce, ToolHold                per node that may be held
 //! integrate        forces, Mass                 -> DisplacementIncrement, Displacement         per node
 //! tool_removal     Displacement, motion         -> RemovalStep, ToolIntake                per element in reach
@@ -95,13 +95,13 @@ pub use runs_on::{DescribeKernels, HostSystem, OnDevice, OnHost};
 pub use stage::Stage;
 #[doc(hidden)]
 pub use surface_contact::{Meeting, SurfaceContacts, SurfaceMemory};
-pub(crate) use surface_contact::{find_surface_springs, find_surfaces, seek_surfaces};
+pub(crate) use surface_contact::{count_surface_work, find_surface_springs, find_surfaces, seek_surfaces};
 pub(crate) use suture_tension::find_thread_springs;
 #[doc(hidden)]
 pub use system::Because;
 pub(crate) use system::BeforeSteps;
 pub use system::{Outcome, Phase, System};
-pub(crate) use tool_contact::find_tool_springs;
+pub(crate) use tool_contact::{count_tool_work, find_tool_springs};
 
 use crate::scene::schema::{OwnSystem, Scene, each_load};
 

@@ -4,7 +4,7 @@
 use super::node_system::{BoundSystem, BoundSystems, Callers, NodeRows, OfRun};
 use super::node_views::Before;
 use super::runs_on::HostSystem;
-use crate::backend::cpu::{Cpu, Declared, NodeColumns, OwnRows, ROWS_A_TASK, Touches, Undeclared};
+use crate::backend::cpu::{Cpu, Declared, Met, NodeColumns, OwnRows, ROWS_A_TASK, Touches, Undeclared};
 use crate::backend::step::step_number;
 use crate::components::*;
 use crate::error::Error;
@@ -38,6 +38,7 @@ pub(super) struct BodyColumns {
     touch: Option<&'static mut ToolTouch>,
     grasps: Option<&'static Grasps>,
     hold: Option<&'static mut ToolHold>,
+    met: Option<(&'static ContactForce, &'static mut SurfaceTouch)>,
     own: Option<&'static mut OwnNumbers>,
     chosen: Option<&'static ChosenBy>,
 }
@@ -79,6 +80,11 @@ impl BodyColumnsItem<'_, '_> {
                 rows: &grasps.rows,
                 values: hold.slice_mut(),
                 numbers: grasps.numbers(),
+            }),
+            met: self.met.as_mut().map(|(force, touch)| Met {
+                force: force.slice(),
+                // what contact goes on from stays as it is
+                touch: touch.bypass_change_detection().slice_mut(),
             }),
             own: OwnRows::of(
                 self.own.as_mut().map_or(&mut [], |own| own.slice_mut()),

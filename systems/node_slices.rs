@@ -21,6 +21,7 @@ pub(super) struct SlicedColumns {
     pub external: &'static mut ExternalForce,
     pub u: &'static Displacement,
     pub step: &'static DisplacementIncrement,
+    pub compensation: Option<&'static DisplacementCompensation>,
 }
 
 /// Columns of a body in the run's precision, a row a node.
@@ -36,6 +37,8 @@ pub(super) struct NodeSlices<'a, T> {
     pub external: &'a mut [T],
     pub u: &'a [T],
     pub step: &'a [T],
+    /// What displacements have too much of by rounding (m), and behind it what steps have.
+    pub compensation: Option<&'a [T]>,
 }
 
 impl<'a, T: Scalar> NodeSlices<'a, T> {
@@ -52,7 +55,15 @@ impl<'a, T: Scalar> NodeSlices<'a, T> {
             external: columns.external.into_inner().slice_mut(),
             u: columns.u.slice(),
             step: columns.step.slice(),
+            compensation: columns.compensation.map(|compensation| compensation.slice()),
         }
+    }
+
+    /// Displacement of a node (m), without what rounding has made of the sum of its steps: who corrects steps by where
+    /// nodes are would push by that, m ulp(u)/Δt².
+    #[inline]
+    pub fn displacement(&self, row: usize) -> DVec3 {
+        vector(self.u, row) - self.compensation.map_or(DVec3::ZERO, |compensation| vector(compensation, row))
     }
 
     /// Where a node would go.
@@ -61,6 +72,25 @@ impl<'a, T: Scalar> NodeSlices<'a, T> {
         let damping = self.damping.map_or(0.0, |damping| damping[row].to_f64());
         let force = vector(self.external, row) - vector(self.internal, row);
         coefficients.foresee(mass, damping, self.axes[row], vector(self.step, row), force)
+    }
+}
+
+/// What contact between surfaces does to the nodes of a body, where these may meet others.
+pub(super) type MetColumns = Option<(&'static ContactForce, &'static mut SurfaceTouch)>;
+
+/// Notes that a node goes farther (m) than contact between surfaces has foreseen when it counted what it takes, with
+/// `work_factor` for each joule; see [`NodeColumns::note_farther`](crate::backend::cpu::NodeColumns).
+pub(super) fn note_farther(
+    met: &mut Option<(&ContactForce, Mut<'_, SurfaceTouch>)>,
+    row: usize,
+    farther: DVec3,
+    work_factor: f64,
+) {
+    if let Some((force, touch)) = met {
+        // what contact goes on from stays as it is
+        let (touch, at) = (touch.bypass_change_detection(), MEETING_NUMBERS * row + 7);
+        let loss = touch.get(at) - 0.5 * work_factor * force.vector(row).dot(farther);
+        touch.set(at, loss);
     }
 }
 

@@ -13,6 +13,7 @@ use crate::components::*;
 use crate::math::{Scalar, SimdScalar};
 use crate::shader;
 use bevy_ecs::prelude::*;
+use glam::DVec3;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -119,14 +120,16 @@ pub(super) fn find_areas(faces: &FaceCorners, rest: &RestPosition, displacement:
 fn find_areas_of<T: Scalar>(faces: &FaceCorners, rest: &RestPosition, displacement: &[T], areas: &mut Vec<T>) {
     areas.clear();
     areas.reserve(12 * faces.faces.len());
-    let at = |node: u32| {
-        let (x, u) = (rest.0[node as usize], &displacement[3 * node as usize..3 * node as usize + 3]);
+    // from a corner of the face at rest: so areas keep their digits far from the origin
+    let at = |node: u32, from: DVec3| {
+        let (x, u) = (rest.0[node as usize] - from, &displacement[3 * node as usize..3 * node as usize + 3]);
         [T::from_f64(x.x) + u[0], T::from_f64(x.y) + u[1], T::from_f64(x.z) + u[2]]
     };
     let alive = faces.alive.read();
     for ((&[a, b, c, d], &weight), &alive) in faces.faces.iter().zip(&faces.weights).zip(&*alive) {
-        let (there, weight) = (alive != 0, T::from_f64(weight));
-        let mut of_face = if there { corner_areas([at(a), at(b), at(c), at(d)]) } else { [[T::default(); 3]; 4] };
+        let (there, weight, from) = (alive != 0, T::from_f64(weight), rest.0[a as usize]);
+        let places = || [at(a, from), at(b, from), at(c, from), at(d, from)];
+        let mut of_face = if there { corner_areas(places()) } else { [[T::default(); 3]; 4] };
         for number in of_face.as_flattened_mut() {
             *number = *number * weight;
         }
@@ -171,11 +174,13 @@ fn cross<T: Scalar>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Adds what finds the areas of deformed faces: six numbers of each, its nodes first, and where these are at rest.
+/// Adds what finds the areas of deformed faces: six numbers of each, its nodes first, and where these are at rest, from
+/// its first corner.
 pub(super) fn with_faces(stage: Stage, nodes: &[[u32; 4]], faces: &[u32], body: Entity, world: &World) -> Stage {
     let rest = world.get::<RestPosition>(body).map_or(&[][..], |rest| &rest.0);
-    let point = |&node: &u32| rest[node as usize].as_vec3().to_array();
-    let points: Vec<f32> = nodes.as_flattened().iter().flat_map(point).collect();
+    let points_of =
+        |face: &[u32; 4]| face.map(|node| (rest[node as usize] - rest[face[0] as usize]).as_vec3().to_array());
+    let points: Vec<f32> = nodes.iter().flat_map(points_of).flatten().collect();
     stage.fragment(shader!("face_area")).integers("faces", faces).reals("face_points", &points)
 }
 

@@ -1,5 +1,6 @@
 //! `suction_mouth`: which faces tools suck, and by what pressure. `shaders/suction_mouth.wgsl` is its twin, with
-//! `shaders/suction_presence.wgsl`, `shaders/suction_nodes.wgsl` and `shaders/suction_pressure.wgsl`.
+//! `shaders/suction_presence.wgsl`, `shaders/suction_hidden.wgsl`, `shaders/suction_nodes.wgsl` and
+//! `shaders/suction_pressure.wgsl`.
 
 use super::element_removal::CRITERION_STEPS;
 use super::suction::parts_of;
@@ -50,10 +51,11 @@ fn suction_mouth(
     blocks: Query<Option<&Alive>, With<Block>>,
 ) -> Result<(), Error> {
     let is_due = clock.step.is_multiple_of(CRITERION_STEPS);
-    // what bodies close of each mouth
+    // what is seen in each mouth, and what share of that bodies close
+    let mut seen: BTreeMap<usize, Vec<Seen>> = BTreeMap::new();
     let mut shares: BTreeMap<usize, f64> = BTreeMap::new();
     for (suction, body) in all.iter().filter(|_| is_due) {
-        let Ok((authoring, rest, displacement, mut marks, _)) = bodies.get_mut(body.0) else {
+        let Ok((authoring, rest, displacement, ..)) = bodies.get(body.0) else {
             return Err(missing("a column of a body"));
         };
         let of_block = |&block: &Entity| blocks.get(block).ok().flatten().map(|alive| alive.0.as_slice());
@@ -63,10 +65,20 @@ fn suction_mouth(
             alive[block as usize].is_none_or(|alive| alive[row as usize] == 1)
         };
         let pose = suction.pose_in(&signals);
-        let place = |node: u32| rest.0[node as usize] - suction.reference + displacement.vector(node as usize);
+        let place =
+            |node: u32| pose.inverse(rest.0[node as usize] - suction.reference + displacement.vector(node as usize));
+        seen.entry(suction.mouth).or_default().extend(seen_by(suction, body.0, is_there, place));
+    }
+    for (suction, body) in all.iter().filter(|_| is_due) {
+        let Ok((_, rest, displacement, mut marks, _)) = bodies.get_mut(body.0) else {
+            return Err(missing("a column of a body"));
+        };
+        let Some(seen) = seen.get(&suction.mouth) else { continue };
         let first = suction.first_mark();
-        mark(suction, &pose, is_there, place, &mut marks[first..first + suction.faces.words()]);
-        *shares.entry(suction.mouth).or_default() += closed(suction, &pose, place, &marks[first..]);
+        mark(suction, body.0, seen, &mut marks[first..first + suction.faces.words()]);
+        let place = |node: u32| rest.0[node as usize] + displacement.vector(node as usize);
+        *shares.entry(suction.mouth).or_default() +=
+            closed(suction, &suction.pose_in(&signals), place, &marks[first..]);
     }
     for (mut suction, body) in &mut all {
         let Ok((.., marks, mut pressures)) = bodies.get_mut(body.0) else { return Err(missing("a column of a body")) };
@@ -91,24 +103,48 @@ fn follows(delay: f64, time_step: f64) -> f64 {
     if delay > time_step { time_step / delay } else { 1.0 }
 }
 
-/// Marks the faces that are sucked, then their nodes.
-fn mark(
+/// A face that is in a mouth, seen along its axis.
+struct Seen {
+    body: Entity,
+    face: usize,
+    /// The share of it that is.
+    share: f32,
+    /// Its corners in the tool's frame (m).
+    corners: [DVec3; 4],
+}
+
+/// The faces of a body that are in the mouth; some of them may hide others.
+fn seen_by(
     suction: &Suction,
-    pose: &Pose,
+    body: Entity,
     is_there: impl Fn(usize) -> bool,
     place: impl Fn(u32) -> DVec3,
-    marks: &mut [u32],
-) {
+) -> impl Iterator<Item = Seen> {
     let faces = &suction.faces;
-    let of_face = |face: usize| {
+    (0..faces.len()).filter_map(move |face| {
         let opposite = faces.opposites[face];
         if !is_there(face) || opposite != NO_FACE && is_there(opposite as usize) {
-            return 0;
+            return None;
         }
-        suction.share_in_mouth(faces.corners[face].map(|node| pose.inverse(place(node)))).to_bits()
-    };
+        let corners = faces.corners[face].map(&place);
+        let share = suction.share_in_mouth(corners);
+        (share > 0.0).then_some(Seen { body, face, share, corners })
+    })
+}
+
+/// Marks the faces of a body that are sucked, which no other hides, then their nodes.
+fn mark(suction: &Suction, body: Entity, seen: &[Seen], marks: &mut [u32]) {
+    let faces = &suction.faces;
     let (of_faces, of_nodes) = marks.split_at_mut(faces.len());
-    of_faces.iter_mut().enumerate().for_each(|(face, mark)| *mark = of_face(face));
+    of_faces.fill(0);
+    for Seen { face, share, corners, .. } in seen.iter().filter(|seen| seen.body == body) {
+        // warped, a face would be before itself
+        let hides =
+            |other: &Seen| (other.body, other.face) != (body, *face) && suction.is_hidden(corners, &other.corners);
+        if !seen.iter().any(hides) {
+            of_faces[*face] = share.to_bits();
+        }
+    }
     let parts = &faces.parts;
     for (i, mark) in of_nodes.iter_mut().enumerate() {
         let corners = &parts.corners[parts.starts[i] as usize..parts.starts[i + 1] as usize];
@@ -160,8 +196,8 @@ struct Presence {
 }
 uniform!(Presence { count });
 
-/// For each body what tells which faces are there, block by block; for each tool what marks faces, what marks nodes,
-/// and what finds the pressure.
+/// For each body what tells which faces are there, block by block; for each tool what finds faces in the mouth, what
+/// marks those that no other hides, what marks nodes, and what finds the pressure.
 fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let blocks = BlockKernels::of_world(world, buffers);
     let all: Vec<(Suction, Entity)> =
@@ -241,16 +277,16 @@ struct OfTool {
 }
 
 impl OfTool {
-    fn kernel(&self, entry: &'static str, shader: Fragment, buffers: &mut dyn Buffers) -> Kernel {
+    fn kernel(&self, entry: &'static str, shader: Fragment) -> Kernel {
         Kernel::new(entry, entry)
             .fragment(shader)
+            .fragment(shader!("suction_tool"))
             .fragment(shader!("row"))
             .fragment(criterion_due())
             .bind_uniform::<SuctionMouth>("mouth", self.mouth)
-            .bind(SuctionMarks::NAME, buffers.column(self.body, SuctionMarks::NAME))
     }
 
-    fn kernels(&self, buffers: &mut dyn Buffers) -> [Kernel; 3] {
+    fn kernels(&self, buffers: &mut dyn Buffers) -> [Kernel; 4] {
         let faces = &self.suction.faces;
         let of_faces: Vec<[u32; 5]> = faces
             .corners
@@ -265,17 +301,31 @@ impl OfTool {
         let lists = buffers.constants("faces of nodes".into(), bytemuck::cast_slice(&lists));
         let parts = buffers.constants("parts of faces".into(), bytemuck::cast_slice(&parts_of(faces)));
         let displacement = buffers.column(self.body, Displacement::NAME);
-        [
-            self.kernel("suction_mouth", shader!("suction_mouth"), buffers)
+        let shares = buffers.constants("shares of faces in a mouth".into(), &vec![0; 4 * faces.len()]);
+        let of_each_face = |kernel: Kernel| {
+            kernel
+                .fragment(shader!("suction_faces"))
+                .fragment(Fragment::new(
+                    "generated: how steep faces stand, and how near layers are",
+                    format!("const STEEP: f32 = {STEEP:?};\nconst APART: f32 = {APART:?};\n"),
+                ))
                 .bind("faces", of_faces)
                 .bind("rest_points", self.points)
                 .bind(Displacement::NAME, displacement)
-                .bind(FacePresence::NAME, buffers.column(self.body, FacePresence::NAME))
-                .threads(faces.len() as u32),
-            self.kernel("suction_nodes", shader!("suction_nodes"), buffers)
+                .bind("shares_in_mouth", shares)
+                .threads(faces.len() as u32)
+        };
+        [
+            of_each_face(self.kernel("suction_mouth", shader!("suction_mouth")))
+                .bind(FacePresence::NAME, buffers.column(self.body, FacePresence::NAME)),
+            of_each_face(self.kernel("suction_hidden", shader!("suction_hidden")))
+                .bind(SuctionMarks::NAME, buffers.column(self.body, SuctionMarks::NAME)),
+            self.kernel("suction_nodes", shader!("suction_nodes"))
+                .bind(SuctionMarks::NAME, buffers.column(self.body, SuctionMarks::NAME))
                 .bind("faces_of_nodes", lists)
                 .threads(faces.parts.rows.len() as u32),
-            self.kernel("suction_pressure_of", shader!("suction_pressure"), buffers)
+            self.kernel("suction_pressure_of", shader!("suction_pressure"))
+                .bind(SuctionMarks::NAME, buffers.column(self.body, SuctionMarks::NAME))
                 .bind("parts", parts)
                 .bind("rest_points", self.points)
                 .bind(Displacement::NAME, displacement)

@@ -28,9 +28,9 @@ use bevy_ecs::query::QueryData;
 use body_slices::BodySlices;
 pub(crate) use device::find as find_surfaces;
 use glam::DVec3;
-pub(super) use kernels::ForeseenNodes;
+pub(super) use kernels::{ForeseenNodes, note_farther};
 pub use memory::SurfaceMemory;
-pub(crate) use solved::{find as find_surface_springs, seek as seek_surfaces};
+pub(crate) use solved::{count_work as count_surface_work, find as find_surface_springs, seek as seek_surfaces};
 use std::time::Duration;
 
 /// The explicit Lagrange correction of the predicted step, of points of surfaces against faces of others (see
@@ -91,6 +91,10 @@ pub struct Meeting {
     pub edges: bool,
     /// The spring that keeps them out, in place of the kinematic law.
     pub spring: Option<ContactSpring>,
+    /// The smaller edge of both (m): by it goes what must be little for elements of either.
+    pub edge: f64,
+    /// How fast points that begin inside are pushed out (m/s).
+    pub settling: f64,
 }
 
 /// Which bodies may meet, and what is known of their surfaces. Nothing in it is carried on from step to step but what
@@ -108,10 +112,12 @@ pub struct SurfaceContacts {
     pub skin: f64,
     /// A point near the bodies (m), from which places are counted: so they keep their digits far from the origin.
     pub reference: DVec3,
-    /// Length of an edge of the surfaces (m).
+    /// Length of an edge of each body's surface (m).
+    pub edges: Vec<f64>,
+    /// The smallest of these (m): by it goes only what is the same for all at once, and when it is looked anew.
     pub edge: f64,
-    /// How fast points that begin inside another body are pushed out (m/s).
-    pub settling: f64,
+    /// The largest [`Meeting::edge`] (m).
+    coarsest: f64,
     surface: Surface,
 }
 
@@ -134,6 +140,9 @@ struct Surface {
     elements: Option<usize>,
     /// One a body.
     trees: Vec<Tree>,
+    /// How deep the inside of the shallowest body goes (m), and how much deeper that of each (m).
+    shallowest: f64,
+    beyond: Vec<f64>,
     lists: Lists,
     crossings: crossings::Crossings,
     /// Of each node of a body that meets itself its piece, as of all its elements; else empty.
@@ -173,8 +182,8 @@ struct Surface {
     /// What points face in an implicit step, in the order of points, and what may touch.
     faced_by_task: Vec<Vec<(u32, Faced)>>,
     pairs: Vec<solved::Pair>,
-    /// Of each contact of an implicit step what it did at the end of the last one, and its slopes.
-    solved: Vec<solved::Solved>,
+    /// The slopes of each contact of an implicit step.
+    solved: Vec<solved::Slopes>,
     figures: Figures,
 }
 
@@ -238,6 +247,7 @@ impl SurfaceContacts {
         let count = self.bodies.len();
         self.meetings[a * count + b] = Some(meeting);
         self.meetings[b * count + a] = Some(meeting);
+        self.coarsest = self.coarsest.max(meeting.edge);
     }
 
     /// How points of a body meet faces of another.
@@ -250,6 +260,12 @@ impl SurfaceContacts {
         self.meeting(point, face).is_some_and(|meeting| meeting.faces == of_face)
     }
 
+    /// The bodies that are kept away from one, by their places among all.
+    pub(crate) fn met_by(&self, body: usize) -> Vec<Entity> {
+        let meets = |other: &usize| self.meeting(body as u32, *other as u32).is_some();
+        (0..self.bodies.len()).filter(meets).map(|other| self.bodies[other]).collect()
+    }
+
     /// Whether points of a body's faces may meet anybody.
     pub(crate) fn has_face_points(&self, body: usize) -> bool {
         let count = self.bodies.len();
@@ -259,16 +275,6 @@ impl SurfaceContacts {
     /// Whether there is any friction.
     fn has_friction(&self) -> bool {
         self.meetings.iter().flatten().any(|meeting| meeting.friction != [0.0; 2])
-    }
-
-    /// The largest thickness (m).
-    fn thickness(&self) -> f64 {
-        self.meetings.iter().flatten().map(|meeting| meeting.thickness).fold(0.0, f64::max)
-    }
-
-    /// How far faces may be that are in a point's way (m): within reach outside, and as deep as an inside goes.
-    fn farthest(&self, reach: f64) -> f64 {
-        f64::max(self.thickness() + reach, self.surface.triangles.deepest())
     }
 
     /// How many points and faces there are.

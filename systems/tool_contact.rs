@@ -10,6 +10,7 @@ use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
 use super::rows::Rows;
+use super::surface_contact::note_farther;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, Foreseen, NodeColumns};
@@ -23,7 +24,7 @@ use glam::DVec3;
 pub use in_step::ContactStep;
 use in_step::ToolInStep;
 use smallvec::SmallVec;
-pub(crate) use solved::find as find_tool_springs;
+pub(crate) use solved::{count_work as count_tool_work, find as find_tool_springs};
 pub(super) use stage::{ToolNodes, stage as tool_stage};
 use std::ops::Range;
 
@@ -88,7 +89,9 @@ impl NodeSystem for ToolContacts {
     type Columns = (
         (&'static Mass, Option<&'static InertialMass>, Option<&'static DampingCoefficient>),
         (&'static InternalForce, &'static ConstrainedAxes, &'static Displacement, &'static DisplacementIncrement),
+        Option<&'static DisplacementCompensation>,
         (&'static mut ExternalForce, &'static mut ToolTouch),
+        Option<(&'static ContactForce, &'static mut SurfaceTouch)>,
     );
     type Prepared = ContactStep;
 
@@ -123,7 +126,7 @@ impl NodeSystem for ToolContacts {
                     // the solver finds them apart
                     Some(_) => {}
                     None if are_near => {
-                        let place = nodes.rest[row] - self.reference + nodes.displacement(row);
+                        let place = nodes.rest[row] - self.reference + nodes.exact_displacement(row);
                         let near = step.near(mask, place);
                         if near != 0 || self.is_touched(values) {
                             self.touch(step, (row, near, place), nodes, values);
@@ -200,8 +203,11 @@ impl ToolContacts {
             several.extend(near.filter_map(|tool| self.predict(step, tool, at, stuck >> tool & 1 == 1)));
             &mut several[..]
         };
-        let d = predicted + self.push_apart(step, all, (place, predicted), free);
-        let work_factor = step.coefficients.work_factor;
+        let pushed = self.push_apart(step, all, (place, predicted), free);
+        let (d, work_factor) = (predicted + pushed, step.coefficients.work_factor);
+        if step.counts_work && pushed != DVec3::ZERO {
+            nodes.note_farther(row, pushed, work_factor);
+        }
         let mut sum = DVec3::ZERO;
         for touch in all.iter().filter(|touch| touch.push > 0.0) {
             let change = touch.outwards + touch.tangential;
@@ -219,7 +225,8 @@ impl ToolContacts {
             of_tool[3] = T::from_f64(if touch.slides { SLIDES } else { STICKS });
             if step.counts_work {
                 let work = work_factor * force.dot(touch.tool_step);
-                let on_node = work_factor * (force * free).dot(0.5 * (before + d));
+                // along axes that are moved as told, too: who moves them does as much less
+                let on_node = work_factor * force.dot(0.5 * (before + d));
                 of_tool[4] += T::from_f64(slip);
                 of_tool[5] += T::from_f64(work);
                 of_tool[6] += T::from_f64(work - on_node);
@@ -381,5 +388,8 @@ fn stage(body: Entity, contacts: &ToolContacts, world: &mut World, buffers: &mut
     let counts_work = u32::from(world.resource::<Clock>().relaxation.is_none());
     let limits = Limits { edge: contacts.edge as f32, settling: contacts.settling as f32, counts_work };
     let stage = stage.own(shader!("contact_spring"));
+    let (text, columns) = note_farther(body, world);
+    let stage = text.into_iter().fold(stage, NodeStage::own);
+    let stage = columns.iter().fold(stage, |stage, column| stage.column(column, buffers.column(body, column)));
     stage.bind_uniform::<Limits>("limits", buffers.uniform("tool contact".into(), &limits.bytes()))
 }

@@ -133,8 +133,8 @@ struct Asks {
 }
 
 const NOTHING: Asks = Asks { usual: 0, most: 0, of_steps: 0.0 };
-/// As counted: 2, and 60 to 64 in 2 to 4 steps of 136.
-const CONTACT: Asks = Asks { usual: 2, most: 70, of_steps: 0.05 };
+/// As counted on one thread: 2, and 61 to 71 in 4 steps of 136.
+const CONTACT: Asks = Asks { usual: 2, most: 73, of_steps: 0.05 };
 /// As counted: 49 to 65.
 const NEWTON: Asks = Asks { usual: 65, most: 0, of_steps: 0.0 };
 
@@ -208,7 +208,9 @@ fn a_step_asks_for_no_memory() {
             let calls: usize = usual.iter().map(|(_, calls)| calls.saturating_sub(asks.usual)).sum();
             let too_many = calls as u64 > DOUBLED + blocks + places;
             let too_often = more.len() as f64 > asks.of_steps * counted as f64;
-            if too_many || too_often || more.iter().any(|(_, calls)| *calls > asks.most) {
+            // what threads ask for beside it they may ask for in any step
+            let most = asks.most + (blocks + places) as usize;
+            if too_many || too_often || more.iter().any(|(_, calls)| *calls > most) {
                 wrong.push(format!("{what}, {precision:?} on {threads}: {found:?}"));
             }
         }

@@ -20,16 +20,24 @@ pub(super) struct OnSurface {
     pub distance: f64,
 }
 
-/// The place of a body's surface at rest nearest to a point (m), among faces that count.
-pub(super) fn nearest(body: &BodyParts, at: DVec3, counts: &dyn Fn(usize) -> bool) -> Option<OnSurface> {
-    let points = &body.placed.mesh.points;
+/// What a point may be off a face, in sides of it, that touches it.
+pub(super) const TOUCHES: f64 = 1e-9;
+
+/// The place of a body's surface nearest to a point (m), with its nodes where they are told to be (m), among faces that
+/// count.
+pub(super) fn nearest(
+    (body, points): (&BodyParts, &[DVec3]),
+    at: DVec3,
+    counts: &dyn Fn(usize) -> bool,
+) -> Option<OnSurface> {
     let mut best: Option<OnSurface> = None;
     for (_, face) in body.placed.surface().iter().enumerate().filter(|(place, _)| counts(*place)) {
         for corners in face.triangles() {
-            let found = OnTriangle::nearest(at, corners.map(|node| points[node as usize]));
+            let places = corners.map(|node| points[node as usize]);
+            let (found, same) = (OnTriangle::nearest(at, places), TOUCHES * places[0].distance(places[1]));
             let distance = at.distance(found.at);
-            // of equally near ones the first
-            if found.at.is_finite() && best.as_ref().is_none_or(|best| distance < best.distance) {
+            // of equally near ones the first, however the body is turned
+            if found.at.is_finite() && best.as_ref().is_none_or(|best| distance + same < best.distance) {
                 let (weights, element) = (found.weights, face.element);
                 best = Some(OnSurface { corners, weights, element, at: found.at, distance });
             }
@@ -56,7 +64,7 @@ pub(super) fn anchor(
     let mesh = &body.placed.mesh;
     let mut place = at;
     if Locator::new(mesh).holds(at).is_none() {
-        let found = nearest(body, at, &|_| true)?;
+        let found = nearest((body, &mesh.points), at, &|_| true)?;
         let edge = edge(body);
         if found.distance > edge {
             let (x, y, z) = found.at.into();

@@ -2,6 +2,7 @@
 
 use super::Assembly;
 use crate::components::*;
+use crate::math::radians;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Axis, Constraint, Curve, InitialState};
 use bevy_ecs::prelude::*;
@@ -98,7 +99,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
                     }
                     (displacement, gradient) = (DVec3::ZERO, DMat3::IDENTITY);
                 }
-                let rotation = *rotation * std::f64::consts::PI / 180.0;
+                let rotation = radians(*rotation);
                 let curve = curve.clone();
                 let signal =
                     world.resource_mut::<Signals>().add(Signal::Motion { curve, displacement, gradient, rotation });

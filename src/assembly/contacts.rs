@@ -6,13 +6,14 @@ use super::{Assembly, BodyParts};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
 use crate::elements::Stiffness;
+use crate::math::{radians, turned};
 use crate::mesh::Triangles;
 use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Contact, ContactLaw, Curve, Scene, Select, Tool, ToolMesh, ToolPlace};
 use crate::tools::{DistanceGrid, Geometry, Solid};
 use bevy_ecs::prelude::*;
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -27,7 +28,7 @@ const SAFELY: f64 = 0.5;
 const FAR: f64 = 100.0;
 
 /// How many instants of a run are looked at for where a tool is, and when jaws close.
-pub(super) const INSTANTS: u32 = 1000;
+const INSTANTS: u32 = 1000;
 
 /// Half of what a tool measures across, in edges, below which it may slip between nodes.
 const THINNEST: f64 = 2.0;
@@ -86,6 +87,19 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let contacts = ToolContacts { tools, reference, rows, masks, boxes, edge, settling, felt };
         let touch = Reals::zeros(assembly.precision, contacts.numbers() * contacts.rows.len());
         world.entity_mut(body.entity).insert((contacts, ToolTouch(touch)));
+    }
+}
+
+/// Tells where guided tools are with which nothing is done.
+pub(super) fn spawn_idle(assembly: &Assembly<'_>, world: &mut World) {
+    let scene = &assembly.scene.scene;
+    let is_idle = |(name, tool): &(&String, &Tool)| tool.free.is_none() && !scene.uses(name);
+    let mut signals = world.resource_mut::<Signals>();
+    let mut pose = |tool: &Tool| signals.add(Signal::Pose { motion: motion(tool), reference: DVec3::ZERO });
+    let idle: BTreeMap<String, usize> =
+        scene.tools.iter().filter(is_idle).map(|(name, tool)| (name.clone(), pose(tool))).collect();
+    if !idle.is_empty() {
+        world.insert_resource(IdleTools(idle));
     }
 }
 
@@ -238,8 +252,7 @@ pub(super) fn settling(body: &BodyParts, edge: f64, world: &World) -> f64 {
 
 /// How a tool of the scene moves.
 pub fn motion(tool: &Tool) -> ToolMotion {
-    let radians = |degrees: DVec3| degrees * std::f64::consts::PI / 180.0;
-    let place = |place: &ToolPlace| (place.t, place.at, DQuat::from_scaled_axis(radians(place.rotation)));
+    let place = |place: &ToolPlace| (place.t, place.at, turned(place.rotation));
     ToolMotion {
         path: tool.places().iter().map(place).collect(),
         moves: tool.moves.iter().map(|part| (part.displacement, radians(part.rotation))).collect(),
@@ -297,6 +310,11 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
     are_inside
 }
 
+/// Times of a run (s) at which it is looked where a tool is.
+pub(super) fn instants(duration: f64) -> impl Iterator<Item = f64> {
+    (0..=INSTANTS).map(move |instant| duration * f64::from(instant) / f64::from(INSTANTS))
+}
+
 /// Warns of a tool that stays so far from where a body begins as nobody means who counts in metres.
 fn stays_far(
     contact: &ToolContact,
@@ -307,9 +325,8 @@ fn stays_far(
     let Some((middle, radius)) = contact.geometry.bounding_sphere().filter(|_| !motion.is_led()) else { return };
     let (low, high) = bounds(&body.placed.mesh.points);
     let across = low.distance(high);
-    let instants = (0..=INSTANTS).map(|instant| duration * f64::from(instant) / f64::from(INSTANTS));
-    let of = |time: f64| motion.pose(time, |number| motion.curves[number].value(time)).place(middle);
-    let places = instants.chain(motion.path.iter().map(|key| key.0)).map(of);
+    let times = instants(duration).chain(motion.path.iter().map(|key| key.0));
+    let places = times.map(|time| motion.meant(time).place(middle));
     let nearest = places.map(|place| place.distance(0.5 * (low + high))).fold(f64::INFINITY, f64::min);
     let away = nearest - radius - 0.5 * across;
     if away > FAR * across {

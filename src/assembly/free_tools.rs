@@ -6,6 +6,7 @@ use super::contacts::{
 use super::tool_overlaps::{self, Standing};
 use super::{Assembly, loads};
 use crate::components::*;
+use crate::math::radians;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Contact, Free, Load, On, Tool};
 use crate::tools::{Geometry, Inertia, RigidMotion};
@@ -44,7 +45,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         };
         let place = pose_at_first(tool).0 + turn * inertia.center - free_tools.reference;
         tool_.start = place;
-        let spin = free.spin * (std::f64::consts::PI / 180.0);
+        let spin = radians(free.spin);
         let momentum = turn * (inertia.moments * (turn.conjugate() * spin));
         motions.all.push(FreeMotion::at(RigidMotion { place, turn, velocity: free.velocity, momentum }));
         free_tools.all.push(tool_);

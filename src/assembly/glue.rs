@@ -1,31 +1,85 @@
 //! Ties and glue: points and nodes become weights on faces.
 
-use super::anchors::{OnSurface, anchor, nearest};
+mod joints;
+
+use super::anchors::{OnSurface, TOUCHES, anchor, nearest};
 use super::contacts::{bounds, edge, reference};
 use super::loads::corners_of;
+use super::sutures::at_start;
 use super::{Assembly, BodyParts};
 use crate::components::*;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Attachment, Point, Select};
 use bevy_ecs::prelude::*;
 use glam::{DMat3, DVec3};
+use joints::Joints;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
+
+/// What counts where bodies begin deformed.
+const AT_START: &str = "it counts where bodies are at the start, which their `start` tells";
 
 /// What is made of the attachments so far.
 struct Gluing<'a> {
     assembly: &'a Assembly<'a>,
+    world: &'a World,
+    /// Whether bodies begin deformed.
+    deformed: bool,
+    /// Where the nodes of each body are at the start (m).
+    points: &'a [Cow<'a, [DVec3]>],
     glue: Glue,
     /// How many ties there are of each body's points.
     counts: BTreeMap<usize, usize>,
 }
 
-/// Spawns all ties, single ones and those of surfaces that are glued.
+/// A body at the start.
+#[derive(Clone, Copy)]
+struct Placed<'a> {
+    /// Its place in [`Glue::bodies`].
+    place: usize,
+    name: &'a String,
+    body: &'a BodyParts,
+    /// Where its nodes are (m), in the author's order.
+    points: &'a [DVec3],
+}
+
+/// Spawns all ties, single ones and those of surfaces that are glued. What begins deformed is not there yet: it waits
+/// for [`spawn_deformed`].
 pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
+    if !begin_deformed(assembly) {
+        spawn_ties(assembly, false, world, diagnostics);
+    }
+}
+
+/// The same where bodies begin deformed, as they are by now.
+pub(super) fn spawn_deformed(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
+    if begin_deformed(assembly) {
+        spawn_ties(assembly, true, world, diagnostics);
+    }
+}
+
+/// Whether some body begins elsewhere than at rest.
+fn begin_deformed(assembly: &Assembly<'_>) -> bool {
+    let scene = &assembly.scene.scene;
+    !scene.is_static() && scene.bodies.values().any(|body| body.start.is_some())
+}
+
+/// Where the nodes of a body are at the start (m).
+fn points_of<'a>(body: &'a BodyParts, deformed: bool, world: &World) -> Cow<'a, [DVec3]> {
+    let rest: &[DVec3] = &body.placed.mesh.points;
+    match world.get::<Displacement>(body.entity).filter(|_| deformed) {
+        Some(u) => rest.iter().zip(&body.node_rows).map(|(at, &row)| *at + u.vector(row as usize)).collect(),
+        None => Cow::Borrowed(rest),
+    }
+}
+
+fn spawn_ties(assembly: &Assembly<'_>, deformed: bool, world: &mut World, diagnostics: &mut Diagnostics) {
+    let points: Vec<Cow<'_, [DVec3]>> = assembly.bodies.values().map(|body| points_of(body, deformed, world)).collect();
     let bodies = assembly.bodies.values().map(|body| body.entity).collect();
     let corners: Vec<DVec3> =
         assembly.bodies.values().flat_map(|body| <[DVec3; 2]>::from(bounds(&body.placed.mesh.points))).collect();
     let glue = Glue { bodies, sweeps: 1, reference: reference(&corners), ..Glue::default() };
-    let mut gluing = Gluing { assembly, glue, counts: BTreeMap::new() };
+    let mut gluing = Gluing { assembly, world, deformed, points: &points, glue, counts: BTreeMap::new() };
     for (number, attachment) in assembly.scene.scene.attachments.iter().enumerate() {
         match attachment {
             Attachment::Tie { from, to, strength, .. } => {
@@ -39,15 +93,16 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             Attachment::Grasp { .. } | Attachment::Suture { .. } => {}
         }
     }
-    if gluing.glue.ties.is_empty() {
+    let Gluing { glue, counts, .. } = gluing;
+    if glue.ties.is_empty() {
         return;
     }
-    between_led_nodes(&gluing.glue, world, diagnostics);
-    for (body, count) in gluing.counts {
+    between_led_nodes(&glue, world, diagnostics);
+    for (body, count) in counts {
         let state = TieState(Reals::zeros(assembly.precision, TIE_NUMBERS * count));
-        world.entity_mut(gluing.glue.bodies[body]).insert(state);
+        world.entity_mut(glue.bodies[body]).insert(state);
     }
-    world.insert_resource(gluing.glue);
+    world.insert_resource(glue);
 }
 
 /// Tells of ties between nodes that are fixed or prescribed on both sides: no force could move them.
@@ -70,12 +125,17 @@ fn between_led_nodes(glue: &Glue, world: &World, diagnostics: &mut Diagnostics) 
     }
 }
 
-impl Gluing<'_> {
-    /// A body by its name, or the only one: its place, its name and what is known of it.
-    fn body(&self, name: Option<&String>) -> Option<(usize, &String, &BodyParts)> {
-        let mut all = self.assembly.bodies.iter().enumerate();
-        let found = all.find(|(_, (of, _))| name.is_none_or(|name| name == *of));
-        found.map(|(place, (name, body))| (place, name, body))
+impl<'a> Gluing<'a> {
+    /// A body by its name, or the only one.
+    fn body(&self, name: Option<&String>) -> Option<Placed<'a>> {
+        let mut all = self.assembly.bodies.iter().zip(self.points).enumerate();
+        let (place, ((name, body), points)) = all.find(|(_, ((of, _), _))| name.is_none_or(|name| name == *of))?;
+        Some(Placed { place, name, body, points })
+    }
+
+    /// Where something is at the start that is at a place at rest (m).
+    fn begins(&self, anchor: &Anchor, at: DVec3) -> DVec3 {
+        if self.deformed { at_start(anchor, DVec3::ZERO, self.world) } else { at }
     }
 
     fn push(&mut self, point: usize, tie: TiedPoint) {
@@ -86,37 +146,38 @@ impl Gluing<'_> {
 
     /// Ties a point to the nearest face of another.
     fn tie(&mut self, number: usize, [from, to]: [&Point; 2], strength: Strength, diagnostics: &mut Diagnostics) {
-        let (Some((of, name, body)), Some((onto, other, face))) =
-            (self.body(from.body.as_ref()), self.body(to.body.as_ref()))
-        else {
-            return;
-        };
+        let (Some(of), Some(onto)) = (self.body(from.body.as_ref()), self.body(to.body.as_ref())) else { return };
         let path = |field: &str| format!("attachments[{number}].{field}.at");
-        let first = anchor(name, body, from.at, &path("from"), diagnostics);
-        let second = anchor(other, face, to.at, &path("to"), diagnostics);
-        let (Some((point, at)), Some((_, place))) = (first, second) else { return };
-        let Some(found) = nearest(face, place, &|_| true) else { return };
-        let (apart, most) = (at.distance(found.at), edge(body).max(edge(face)));
+        let first = anchor(of.name, of.body, from.at, &path("from"), diagnostics);
+        let second = anchor(onto.name, onto.body, to.at, &path("to"), diagnostics);
+        let (Some((point, at)), Some((goal, place))) = (first, second) else { return };
+        let (at, place) = (self.begins(&point, at), self.begins(&goal, place));
+        let Some(found) = onto.nearest(place, |_| true) else { return };
+        let (apart, most) = (at.distance(found.at), edge(of.body).max(edge(onto.body)));
         if apart > most {
-            diagnostics.error_at(path("to").as_str(), format!("what is to be tied is {apart:.3e} m apart")).note(
-                format!("a tie holds what touches, or nearly: up to an edge of a face, {most:.3e} m; a `Suture` pulls"),
-            );
+            let message = format!("what is to be tied is {apart:.3e} m apart");
+            diagnostics
+                .error_at(path("to").as_str(), message)
+                .note(format!(
+                    "a tie holds what touches, or nearly: up to an edge of a face, {most:.3e} m; a `Suture` pulls"
+                ))
+                .notes(self.deformed.then(|| AT_START.to_string()));
             return;
         }
-        if of == onto && at.distance(place) <= 1e-9 * most {
+        let tie = tied([of, onto], point.nodes, &found, at, (strength, number, None));
+        if of.place == onto.place && (at.distance(place) <= 1e-9 * most || bears_nothing(&tie)) {
             diagnostics.error_at(path("to").as_str(), "both points of the tie are one place");
             return;
         }
-        let tie = tied([of, onto], point.nodes, face, &found, at, (strength, number, None));
-        self.push(of, tie);
+        self.push(of.place, tie);
     }
 
     /// Ties the nodes of one surface that are near another one.
     fn surface(&mut self, number: usize, attachment: &Attachment, diagnostics: &mut Diagnostics) {
         let Attachment::Glue { bodies: (a, b), on, onto, reach, normal, shear, .. } = attachment else { return };
         let path = |field: &str| format!("attachments[{number}].{field}");
-        let (Some((of, name, body)), Some((other, _, face))) = (self.body(Some(a)), self.body(Some(b))) else { return };
-        for (name, body) in [(name, body), (b, face)] {
+        let (Some(one), Some(other)) = (self.body(Some(a)), self.body(Some(b))) else { return };
+        for Placed { name, body, .. } in [one, other] {
             if body.copies > 1 {
                 let message = format!("`{name}` has {} copies: which of them?", body.copies);
                 diagnostics
@@ -126,14 +187,16 @@ impl Gluing<'_> {
             }
         }
         let (Some(points), Some(faces)) = (
-            picked_faces(self.assembly, body, on, &path("on"), diagnostics),
-            picked_faces(self.assembly, face, onto, &path("onto"), diagnostics),
+            picked_faces(self.assembly, one.body, on, &path("on"), diagnostics),
+            picked_faces(self.assembly, other.body, onto, &path("onto"), diagnostics),
         ) else {
             return;
         };
-        let reach = reach.unwrap_or(0.1 * edge(body).min(edge(face)));
-        let mut marked = vec![false; face.placed.surface().len()];
+        let reach = reach.unwrap_or(0.1 * edge(one.body).min(edge(other.body)));
+        let mut marked = vec![false; other.body.placed.surface().len()];
         faces.iter().for_each(|&place| marked[place] = true);
+        let joints = (one.place == other.place).then(|| Joints::of(other));
+        let body = one.body;
         let surface = body.placed.surface();
         let (corners, _) = corners_of(body, points.iter().map(|&place| &surface[place]));
         let mut node_of = vec![0; body.node_rows.len()];
@@ -142,11 +205,12 @@ impl Gluing<'_> {
         for (i, &row) in corners.rows.iter().enumerate() {
             let around = &corners.corners[corners.starts[i] as usize..corners.starts[i + 1] as usize];
             let node = node_of[row as usize];
-            let at = body.placed.mesh.points[node];
-            let Some(found) = nearest(face, at, &|place| marked[place]) else { continue };
+            let at = one.points[node];
+            let own = joints.as_ref().map(|joints| joints.around(node as u32, reach)).unwrap_or_default();
+            let Some(found) = other.nearest(at, |place| marked[place] && !own.contains(&place)) else { continue };
             closest = closest.min(found.distance);
-            let place_of = |row: u32| body.placed.mesh.points[node_of[row as usize]];
-            let [whole, area] = areas(&corners, around, place_of, normal_at(face, &found));
+            let place_of = |row: u32| one.points[node_of[row as usize]];
+            let [whole, area] = areas(&corners, around, place_of, other.normal(&found));
             // corners of faces with middles have none of their area
             if found.distance > reach || whole <= 0.0 {
                 continue;
@@ -159,24 +223,48 @@ impl Gluing<'_> {
                 }
             };
             let id = body.placed.mesh.point_ids.of(node);
-            ties.push(tied([of, other], vec![(row, 1.0)], face, &found, at, (strength, number, Some(id))));
+            ties.push(tied([one, other], vec![(row, 1.0)], &found, at, (strength, number, Some(id))));
         }
         if ties.is_empty() {
-            diagnostics
-                .error_at(path("bodies").as_str(), format!("nothing of `{a}` is near `{b}`: nothing is glued"))
-                .note(format!("the nearest node is {closest:.3e} m off, and `reach` is {reach:.3e} m"));
+            let message = format!("nothing of `{a}` is near `{b}`: nothing is glued");
+            let told = diagnostics.error_at(path("bodies").as_str(), message);
+            if closest.is_finite() {
+                told.note(format!("the nearest node is {closest:.3e} m off, and `reach` is {reach:.3e} m"));
+            }
+            if self.deformed {
+                told.note(AT_START);
+            }
+            if joints.is_some() {
+                told.note(format!(
+                    "faces of `{a}` do not count that are joined to a node along the surface within {reach:.3e} m of it"
+                ));
+            }
         }
-        ties.into_iter().for_each(|tie| self.push(of, tie));
+        ties.into_iter().for_each(|tie| self.push(one.place, tie));
     }
 }
 
 /// The cosine between the normals of faces from which on they are turned towards each other: 120°.
 const TURNED: f64 = -0.5;
 
-/// The normal of a body's face at a place of it.
-fn normal_at(body: &BodyParts, at: &OnSurface) -> DVec3 {
-    let [a, b, c] = at.corners.map(|node| body.placed.mesh.points[node as usize]);
-    (b - a).cross(c - a).normalize_or_zero()
+impl Placed<'_> {
+    /// The place of its surface nearest to a point (m), among faces that count.
+    fn nearest(&self, at: DVec3, counts: impl Fn(usize) -> bool) -> Option<OnSurface> {
+        nearest((self.body, self.points), at, &counts)
+    }
+
+    /// The normal of its face at a place of it.
+    fn normal(&self, at: &OnSurface) -> DVec3 {
+        let [a, b, c] = at.corners.map(|node| self.points[node as usize]);
+        (b - a).cross(c - a).normalize_or_zero()
+    }
+}
+
+/// Whether all that a tie of a body to itself does to a node it undoes again.
+fn bears_nothing(tie: &TiedPoint) -> bool {
+    let mut shares: BTreeMap<u32, f64> = tie.nodes.iter().copied().collect();
+    tie.bearers().for_each(|(row, weight)| *shares.entry(row).or_default() -= weight);
+    shares.values().all(|share| share.abs() <= TOUCHES)
 }
 
 /// A node's share of the area (m²) of the faces `around` it, and of those among them that are turned towards what they
@@ -215,19 +303,18 @@ fn picked_faces(
     }
 }
 
-/// A point at a place (m) of which nodes have so much, tied to a place of a face.
+/// A point at a place (m) of the first body, of which nodes have so much, tied to a place of a face of the second.
 fn tied(
-    bodies: [usize; 2],
+    [of, onto]: [Placed<'_>; 2],
     nodes: Vec<(u32, f64)>,
-    face: &BodyParts,
     found: &OnSurface,
     at: DVec3,
     (strength, number, node): (Strength, usize, Option<u64>),
 ) -> TiedPoint {
-    let points = &face.placed.mesh.points;
+    let Placed { body: face, points, .. } = onto;
     let corners = found.corners.map(|node| points[node as usize]);
     let off_it = at.distance(found.at) > TOUCHES * corners[0].distance(corners[1]);
-    let carried = off_it.then(|| carried(face, found, at)).flatten();
+    let carried = off_it.then(|| carried(onto, found, at)).flatten();
     let (weights, behind) =
         carried.map_or((found.weights, None), |(weights, node, weight)| (weights, Some((node, weight))));
     let of_behind = behind.map_or(DVec3::ZERO, |(node, weight)| points[node as usize] * weight);
@@ -235,7 +322,7 @@ fn tied(
     let gap = frame_of(corners).map_or(DVec3::ZERO, |axes| DVec3::from_array(axes.map(|axis| axis.dot(at - place))));
     let (block, row) = face.element_rows[found.element as usize];
     TiedPoint {
-        bodies,
+        bodies: [of.place, onto.place],
         nodes,
         corners: found.corners.map(|node| face.node_rows[node as usize]),
         weights,
@@ -249,20 +336,19 @@ fn tied(
     }
 }
 
-/// What a point may be off a face, in sides of it, that touches it.
-const TOUCHES: f64 = 1e-9;
-
 /// What the corners of a face have of a place (m) off it, and which node of the element behind has the rest: of all of
-/// them that which is farthest from the face. None where the element has no thickness.
-fn carried(face: &BodyParts, found: &OnSurface, at: DVec3) -> Option<([f64; 3], u32, f64)> {
-    let mesh = &face.placed.mesh;
-    let [a, b, c] = found.corners.map(|node| mesh.points[node as usize]);
+/// them that which is farthest from the face, the first of several. None where the element has no thickness.
+fn carried(face: Placed<'_>, found: &OnSurface, at: DVec3) -> Option<([f64; 3], u32, f64)> {
+    let Placed { body, points, .. } = face;
+    let [a, b, c] = found.corners.map(|node| points[node as usize]);
     let out = (b - a).cross(c - a).normalize_or_zero();
-    let depth = |node: u32| (mesh.points[node as usize] - a).dot(out).abs();
-    let nodes = mesh.element(found.element as usize).iter().copied();
-    let node = nodes.max_by(|one, other| depth(*one).total_cmp(&depth(*other)))?;
-    let sides = DMat3::from_cols(b - a, c - a, mesh.points[node as usize] - a);
+    let depth = |node: u32| (points[node as usize] - a).dot(out).abs();
+    let (nodes, same) = (body.placed.mesh.element(found.element as usize), TOUCHES * a.distance(b));
+    let deepest = nodes.iter().map(|&node| depth(node)).fold(0.0, f64::max);
+    // however the body is turned
+    let node = nodes.iter().copied().find(|&node| depth(node) + same >= deepest)?;
+    let sides = DMat3::from_cols(b - a, c - a, points[node as usize] - a);
     let shares = sides.inverse() * (at - a);
     let weights = [1.0 - shares.x - shares.y - shares.z, shares.x, shares.y];
-    (depth(node) > TOUCHES * a.distance(b) && shares.is_finite()).then_some((weights, node, shares.z))
+    (deepest > same && shares.is_finite()).then_some((weights, node, shares.z))
 }

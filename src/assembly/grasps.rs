@@ -1,6 +1,6 @@
 //! Tools that take nodes along: selections become rows, and jaws that close on nothing are told.
 
-use super::contacts::{INSTANTS, geometries, jumps, motion, reference};
+use super::contacts::{geometries, instants, jumps, motion, reference};
 use super::{Assembly, BodyParts};
 use crate::components::*;
 use crate::scene::diagnostic::Diagnostics;
@@ -110,16 +110,15 @@ fn in_jaws(
     if matches!(curve, Curve::Input { .. }) || motion.is_led() {
         return;
     }
-    let instants = (0..=INSTANTS).map(|instant| scene.duration * f64::from(instant) / f64::from(INSTANTS));
     let path = format!("attachments[{}].{word}", grasp.number);
-    let Some(closes) = instants.into_iter().find(|&time| curve.value(time) >= 0.5) else {
+    let Some(closes) = instants(scene.duration).find(|&time| curve.value(time) >= 0.5) else {
         diagnostics.warn_at(path.as_str(), format!("the tool `{}` never closes: nothing is held", grasp.tool.tool));
         return;
     };
     let (Some(rest), Some(u)) = (world.get::<RestPosition>(body.entity), world.get::<Displacement>(body.entity)) else {
         return;
     };
-    let pose = motion.pose(closes, |number| motion.curves[number].value(closes));
+    let pose = motion.meant(closes);
     let may = grasps.rows.iter().zip(&grasps.masks).filter(|(_, mask)| **mask >> bit & 1 == 1);
     let place = |row: usize| rest.0[row] + u.vector(row);
     let nearest = may

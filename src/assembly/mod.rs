@@ -124,6 +124,7 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     observation::spawn(assembly, world, diagnostics);
     insert_laws(assembly.precision, world);
     start::deform(assembly, world, diagnostics);
+    glue::spawn_deformed(assembly, world, diagnostics);
     // turning is about where bodies are then
     body_columns::start(assembly, world);
     let begin_inside = [
@@ -142,6 +143,7 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
         blocks.for_each(|&block| element_removal::insert_columns(assembly.precision, block, world));
     }
     suction::spawn(assembly, world, diagnostics);
+    contacts::spawn_idle(assembly, world);
     if scene.is_static() {
         relaxation::insert_inertial_masses(assembly, world);
     }

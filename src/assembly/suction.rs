@@ -1,7 +1,7 @@
 //! Tools that suck: names become mouths, and bodies tell their faces.
 
 use super::body_columns::stiffnesses;
-use super::contacts::{motion, reference};
+use super::contacts::{edge, motion, reference};
 use super::loads::corners_of;
 use super::{Assembly, BodyParts};
 use crate::components::*;
@@ -14,6 +14,9 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+/// Edges of faces that are so many times as long as a mouth is across are told of.
+const COARSE: f64 = 2.0;
+
 /// Spawns all tools that suck.
 pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
     let scene = &assembly.scene.scene;
@@ -23,6 +26,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let (Some(body), Some(tool)) = (assembly.body(&suction.body), scene.tools.get(&suction.tool)) else { continue };
         let Some(bore) = suction.bore.or(bore(tool)) else { continue };
         soft(body, (number, suction), world, diagnostics);
+        coarse(body, number, bore, diagnostics);
         mouths.push((&suction.tool, bore));
         let (faces, count) = of_body.entry(body.entity).or_insert_with(|| (Arc::new(faces(body, world)), 0));
         let reference = reference(&body.placed.mesh.points);
@@ -77,6 +81,20 @@ fn soft(body: &BodyParts, (number, suction): (usize, &schema::Suction), world: &
         diagnostics
             .warn_at(format!("suction[{number}].pressure").as_str(), message)
             .note("such tissue may be drawn into the mouth without end");
+    }
+}
+
+/// Warns of faces that are far larger than the mouth: what it pulls at in one is spread over the whole of it.
+fn coarse(body: &BodyParts, number: usize, bore: f64, diagnostics: &mut Diagnostics) {
+    let edge = edge(body);
+    if edge > COARSE * 2.0 * bore {
+        let message = format!(
+            "the mouth is {:.3e} m across, and edges of the surface that it sucks are {edge:.3e} m long in the mean",
+            2.0 * bore
+        );
+        diagnostics
+            .warn_at(format!("suction[{number}]").as_str(), message)
+            .note("the pull is that of the mouth, but spread over whole faces: a finer mesh shows what is drawn in");
     }
 }
 

@@ -11,6 +11,9 @@ use crate::systems::{Meeting, SurfaceContacts};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
+/// Edges that differ by less are alike: those of a body that is placed twice differ by rounding.
+const ALIKE: f64 = 1e-9;
+
 /// Notes which bodies may meet, if there are some.
 pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World) {
     let scene = &assembly.scene.scene;
@@ -22,6 +25,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World) {
         return;
     }
     let mut contacts = SurfaceContacts::new(meeting.iter().map(|(_, body)| body.entity).collect());
+    contacts.edges = edges(&meeting);
     let place = |name: &String| meeting.iter().position(|(other, _)| *other == name);
     for (contact, pair) in pairs {
         let (Contact::Between { thickness, sweeps, points, edges, .. }
@@ -33,20 +37,21 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World) {
         if let [Some(a), Some(b)] = pair.map(place) {
             let faces = *points == Points::Faces;
             let (friction, spring) = (contact.friction(), spring_of(contact, scene));
-            contacts.meet([a, b], Meeting { friction, thickness: *thickness, faces, edges: *edges, spring });
+            let edge = f64::min(contacts.edges[a], contacts.edges[b]);
+            let settling = [a, b].map(|of| settling(meeting[of].1, edge, world)).into_iter().fold(0.0, f64::max);
+            let (thickness, edges) = (*thickness, *edges);
+            contacts.meet([a, b], Meeting { friction, thickness, faces, edges, spring, edge, settling });
         }
     }
     let corners: Vec<DVec3> =
         meeting.iter().flat_map(|(_, body)| <[DVec3; 2]>::from(bounds(&body.placed.mesh.points))).collect();
     contacts.reference = reference(&corners);
-    contacts.edge = meeting.iter().map(|(_, body)| edge(body)).fold(f64::INFINITY, f64::min);
-    let speeds = meeting.iter().map(|(_, body)| settling(body, contacts.edge, world));
-    contacts.settling = speeds.fold(0.0, f64::max);
+    contacts.edge = contacts.edges.iter().copied().fold(f64::INFINITY, f64::min);
     for (number, (name, body)) in meeting.iter().enumerate() {
         let zeros = |rows: usize, numbers: usize| Reals::zeros(assembly.precision, numbers * rows);
         let nodes = body.node_rows.len();
         let columns = (ContactForce(zeros(nodes, 3)), SurfaceTouch(zeros(nodes, MEETING_NUMBERS)));
-        world.entity_mut(body.entity).insert(columns);
+        world.entity_mut(body.entity).insert(columns).insert(Meets(contacts.met_by(number)));
         if contacts.has_face_points(number) {
             let counted = |facet: [u32; 4]| (facet, face_points(facet).len());
             let points = if scene.may_lose_elements(name) {
@@ -63,6 +68,13 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World) {
         }
     }
     world.insert_resource(contacts);
+}
+
+/// The lengths of an edge of bodies (m), of such as are alike the smallest.
+fn edges(bodies: &[(&String, &BodyParts)]) -> Vec<f64> {
+    let all: Vec<f64> = bodies.iter().map(|(_, body)| edge(body)).collect();
+    let smallest = |of: &f64| all.iter().copied().filter(|other| *other >= (1.0 - ALIKE) * of).fold(*of, f64::min);
+    all.iter().map(smallest).collect()
 }
 
 /// The author's nodes of a body's surface that no patch moves by itself, ascending: where it may meet others or is tied

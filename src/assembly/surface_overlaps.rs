@@ -13,7 +13,7 @@ use bevy_ecs::prelude::*;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// How deep points may be inside another body at the start, in edges: those come out by and by.
+/// How deep points may be inside another body at the start, in edges of that: those come out by and by, and are seen.
 const DEEPEST: f64 = 0.5;
 
 /// How far below its surface, as a share of the way to the middle of its element, a node is that does not only touch.
@@ -28,16 +28,20 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
     let Some(contacts) = world.get_resource::<SurfaceContacts>() else { return false };
     let mut are_inside = false;
     let body = |name: &String| assembly.bodies.get(name);
+    let place = |of: &BodyParts| contacts.bodies.iter().position(|body| *body == of.entity);
+    let edge = |of: &BodyParts| place(of).map_or(contacts.edge, |place| contacts.edges[place]);
     for (number, contact) in assembly.scene.scene.contacts.iter().enumerate() {
         match contact {
             Contact::Tool { .. } => {}
             Contact::Between { bodies: (a, b), thickness, .. } => {
                 let (Some(of_a), Some(of_b)) = (body(a), body(b)) else { continue };
                 let [one, other] = [of_a, of_b].map(|body| Outside::new(body, at_start(body, world)));
+                let [edge_of_a, edge_of_b] = [of_a, of_b].map(edge);
                 let path = format!("contacts[{number}].bodies");
-                for pair in [[(a, &one), (b, &other)], [(b, &other), (a, &one)]] {
-                    are_inside |= overlap(pair, contacts.edge, &path, diagnostics)
-                        || too_near(pair, contacts.edge, *thickness, &path, diagnostics);
+                let pairs = [([(a, &one), (b, &other)], edge_of_b), ([(b, &other), (a, &one)], edge_of_a)];
+                for (pair, edge) in pairs {
+                    are_inside |=
+                        overlap(pair, edge, &path, diagnostics) || too_near(pair, edge, *thickness, &path, diagnostics);
                 }
             }
             Contact::Itself { body: named, .. } => {
@@ -45,8 +49,8 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
                 let Some(of) = body(name) else { continue };
                 let path = format!("contacts[{number}]");
                 let outside = Outside::new(of, at_start(of, world));
-                are_inside |= overlap([(name, &outside), (name, &outside)], contacts.edge, &path, diagnostics);
-                if let Some(near) = contacts.near_at_rest() {
+                are_inside |= overlap([(name, &outside), (name, &outside)], edge(of), &path, diagnostics);
+                if let Some(near) = place(of).and_then(|place| contacts.near_at_rest(place)) {
                     narrow_gaps(name, &Outside::new(of, of.placed.mesh.clone()), near, &path, diagnostics);
                 }
             }
@@ -186,7 +190,7 @@ impl Outside {
     }
 }
 
-/// Tells of nodes of one body inside another, and whether there are some.
+/// Tells of nodes of one body inside another, whose faces have edges of such a length (m), and whether there are some.
 fn overlap(
     [(of, one), (inside, other)]: [(&String, &Outside); 2],
     edge: f64,
@@ -212,8 +216,8 @@ fn overlap(
     true
 }
 
-/// Tells of nodes of one body that are nearer to another than the thickness (m) between them, and whether there are
-/// some: those are pushed apart, like what is inside.
+/// Tells of nodes of one body that are nearer to another, whose faces have edges of such a length (m), than the
+/// thickness (m) between them, and whether there are some: those are pushed apart, like what is inside.
 fn too_near(
     [(of, one), (to, other)]: [(&String, &Outside); 2],
     edge: f64,

@@ -12,7 +12,7 @@ columns! {
     /// What each node carries on as a point of a surface, [`MEETING_NUMBERS`] a node: how far it has slipped
     /// elastically (m, a vector); how deep it may be inside (m, 0 or negative); 0 where it faced nothing in the last
     /// step, 1 where it faced something, 2 where it stuck to it, 3 where it slid; how far it was outside of that before
-    /// the step, where it touched after the step (m); since the start the length it has slid (m), and what impact and
+    /// the step, after it in implicit steps (m); since the start the length it has slid (m), and what impact and
     /// friction have taken (J). Exists with [`ContactForce`].
     SurfaceTouch(Reals) = "surface_touch", State of Touch, Nodes(MEETING_NUMBERS);
     /// The same of each point of faces: those of a facet after another, as the body's surface has them, or where
@@ -20,6 +20,10 @@ columns! {
     /// body's faces meet others.
     FaceTouch(Reals) = "face_touch", State of Touch, Other;
 }
+
+/// The bodies that contact keeps away from this one.
+#[derive(Component, Clone, Debug)]
+pub(crate) struct Meets(pub Vec<Entity>);
 
 /// A spring in place of the kinematic law of contact (`Penalty`).
 #[derive(Clone, Copy, Debug, PartialEq)]

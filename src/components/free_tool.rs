@@ -82,11 +82,18 @@ pub struct FreeMotion {
     pub motion: RigidMotion,
     /// What touched it in the last step.
     pub touches: Vec<FreeTouch>,
+    /// For how long their forces acted (s).
+    #[serde(default)]
+    pub acted: f64,
+    /// How far nodes have slipped along its surface since the start (m), each by the place of its body in
+    /// [`FreeTool::meets`] and its row, ascending.
+    #[serde(default)]
+    pub slid: Vec<((u32, u32), f64)>,
     /// Since the start: work of gravity on it (J).
     pub gravity_work: f64,
     /// Of nodes on it (J).
     pub contact_work: f64,
-    /// What impact and friction with nodes have taken (J).
+    /// What impact and friction with nodes have taken (J), but for the second half of the last step.
     pub contact_loss: f64,
     /// What damping has taken (J).
     pub damping_loss: f64,
@@ -104,13 +111,46 @@ pub struct FreeTouch {
     pub arm: DVec3,
     /// Whether it stuck to the tool.
     pub sticks: bool,
+    /// How far it slipped along the tool's surface (m).
+    #[serde(default)]
+    pub slip: f64,
+    /// How far from the surface it was to end (m): 0, and less of a node that was inside before. Others may have taken
+    /// it farther in.
+    #[serde(default)]
+    pub target: f64,
 }
 
 impl FreeMotion {
     /// At the start.
     pub fn at(motion: RigidMotion) -> Self {
-        let touches = Vec::new();
-        Self { motion, touches, gravity_work: 0.0, contact_work: 0.0, contact_loss: 0.0, damping_loss: 0.0 }
+        Self {
+            motion,
+            touches: Vec::new(),
+            acted: 0.0,
+            slid: Vec::new(),
+            gravity_work: 0.0,
+            contact_work: 0.0,
+            contact_loss: 0.0,
+            damping_loss: 0.0,
+        }
+    }
+
+    /// Notes how far each node slips that it touches.
+    pub(crate) fn note_slips(&mut self) {
+        for touch in &self.touches {
+            match self.slid.binary_search_by_key(&touch.node, |(node, _)| *node) {
+                Ok(place) => self.slid[place].1 += touch.slip,
+                Err(place) => self.slid.insert(place, (touch.node, touch.slip)),
+            }
+        }
+    }
+
+    /// Half of what the forces on nodes of the last step do in a step of these (J), by body and row (m), where steps
+    /// are so long (s).
+    pub(crate) fn work_of_half(&self, tool: &FreeTool, time_step: f64, step: impl Fn(Entity, usize) -> DVec3) -> f64 {
+        let of =
+            |touch: &FreeTouch| touch.force.dot(step(tool.meets[touch.node.0 as usize].body, touch.node.1 as usize));
+        0.5 * self.acted / time_step * self.touches.iter().map(of).sum::<f64>()
     }
 
     /// The force on it (N), and its moment about the centre of mass (N m).

@@ -9,11 +9,38 @@ use glam::DVec3;
 columns! {
     /// What tools do to the nodes that they may hold: for each of [`Grasps::rows`] and each of its grasps
     /// [`HOLD_NUMBERS`] numbers: the force on the node in the last step (N); 0 while the tool is open, 1 where it holds
-    /// the node, 2 where it closed without it or the node slipped out; since the start the work that the tool has done
+    /// the node, 2 where it closed without it, 3 where the node slipped out, and 4 while it is open since; since the
+    /// start the work that the tool has done
     /// and what of that was lost when it caught the node (J); the place in the tool's frame where the node was when it
     /// closed (m). Where a hand moves one of the tools, [`FELT_NUMBERS`] more: the sum of the forces since its batch of
     /// steps began (N). Exists where a tool may hold nodes of the body.
     ToolHold(Reals) = "tool_hold", State of Grip, Other;
+}
+
+impl ToolHold {
+    /// A closed tool holds the node.
+    pub(crate) const HELD: f64 = 1.0;
+    /// It closed without it.
+    pub(crate) const WITHOUT: f64 = 2.0;
+    /// The node slipped out of it.
+    pub(crate) const SLIPPED: f64 = 3.0;
+    /// It is open, and the node slipped out before.
+    pub(crate) const LET_GO: f64 = 4.0;
+
+    /// Whether a tool is open.
+    pub(crate) fn is_open(holds: f64) -> bool {
+        holds == 0.0 || holds == Self::LET_GO
+    }
+
+    /// What a tool is to a node when it opens.
+    pub(crate) fn opened(holds: f64) -> f64 {
+        if holds == Self::SLIPPED { Self::LET_GO } else { 0.0 }
+    }
+
+    /// Whether the node slipped out when the tool was closed last.
+    pub(crate) fn has_slipped(holds: f64) -> bool {
+        holds == Self::SLIPPED || holds == Self::LET_GO
+    }
 }
 
 /// Numbers of a node and a grasp in [`ToolHold`].

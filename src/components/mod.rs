@@ -63,6 +63,7 @@ pub use column::{ColumnAccess, Role, all_columns, column_is, columns_in, place_i
 pub use column_layout::{Increments, Rows, Subject};
 #[doc(hidden)]
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
+pub(crate) use contact::Meets;
 #[doc(hidden)]
 pub use contact::{
     ContactForce, ContactGain, ContactSpring, FacePlaces, FaceTouch, MEETING_NUMBERS, SurfaceRows, SurfaceSleep,
@@ -101,10 +102,12 @@ pub use patches::{Patches, inside_of};
 pub use signal::Signal;
 #[doc(hidden)]
 pub use springs::{Rubbing, SolvedPress, SolvedSprings, SpringForces, TouchingSpring};
+pub(crate) use suction::{APART, STEEP};
 #[doc(hidden)]
 pub use suction::{BodyFaces, FacePresence, NO_FACE, SUCTION_NUMBERS, Suction, SuctionMarks, SuctionPressure, share};
 #[doc(hidden)]
 pub use suture::{Anchor, SUTURE_NUMBERS, Suture, SutureForce, SutureState, Sutured, Sutures};
+pub(crate) use tool::IdleTools;
 #[doc(hidden)]
 pub use tool::{FELT_NUMBERS, Hand, Key, Pose, TOUCH_NUMBERS, ToolContact, ToolContacts, ToolMotion, ToolTouch};
 #[doc(hidden)]

@@ -2,6 +2,7 @@
 
 use super::column::columns;
 use super::{FaceCorners, Pose, Reals, Signals};
+use crate::tools::share_in_disc;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use std::sync::Arc;
@@ -123,22 +124,35 @@ impl Suction {
         self.number * self.faces.words()
     }
 
-    /// What share of a face is in the mouth, by its corners in the tool's frame, a triangle's last twice: as if the
-    /// distance to the mouth's edge were linear between them, and whether in reach, as its centroid is. A face that is
-    /// turned away from the mouth, on the far side of the tissue or of a hole in it, is not in it.
+    /// What share of a face is in the mouth, by its corners in the tool's frame, a triangle's last twice: of what is
+    /// seen of it along the axis, if its centroid is in reach. A face that is turned away from the mouth, on the far
+    /// side of the tissue or of a hole in it, is not in it; one that stands nearly along the axis by less and less, so
+    /// that a wall beside the mouth, which closes none of it, is not pulled at by all of it or not, as it leans.
     pub fn share_in_mouth(&self, corners: [DVec3; 4]) -> f32 {
         let [a, b, c, d] = corners;
-        let count = if c == d { 3 } else { 4 };
-        let (mut inside, mut sizes, mut height) = (0.0, 0.0, 0.0);
-        for y in &corners[..count] {
-            let off = self.bore - y.truncate().length();
-            inside += off.max(0.0);
-            sizes += off.abs();
-            height += y.z;
+        let twice = (c - a).cross(d - b);
+        // false also of what is no number
+        if centroid(&corners).z.abs() <= self.reach && twice.z > 0.0 {
+            let turned = (twice.z / (STEEP * twice.length())).min(1.0);
+            (share_in_disc(&corners.map(DVec3::truncate), self.bore) * turned) as f32
+        } else {
+            0.0
         }
-        let is_turned_here = (c - a).truncate().perp_dot((d - b).truncate()) > 0.0;
-        let in_reach = f64::abs(height) <= self.reach * count as f64;
-        if is_turned_here && in_reach && inside > 0.0 { (inside / sizes) as f32 } else { 0.0 }
+    }
+
+    /// Whether a face is behind another, by their corners in the tool's frame: its centroid, seen along the axis from
+    /// within the tool.
+    pub(crate) fn is_hidden(&self, corners: &[DVec3; 4], by: &[DVec3; 4]) -> bool {
+        let at = centroid(corners);
+        let [a, b, c, d] = *by;
+        [[a, b, c], [a, c, d]].into_iter().any(|triangle| {
+            let [p, q, r] = triangle.map(|corner| corner.truncate() - at.truncate());
+            let parts = DVec3::new(q.perp_dot(r), r.perp_dot(p), p.perp_dot(q));
+            let area = parts.element_sum();
+            let height = parts.dot(DVec3::from_array(triangle.map(|corner| corner.z)));
+            // false of what has no area
+            parts.min_element() >= 0.0 && area > 0.0 && height / area > at.z + APART * self.bore
+        })
     }
 
     /// Takes over what the body's columns say.
@@ -147,6 +161,18 @@ impl Suction {
         self.active = self.faces.marked(&marks[first..first + self.faces.words()]);
         self.now = pressure.get(SUCTION_NUMBERS * self.number);
     }
+}
+
+/// Faces whose normals' cosine with the axis of a mouth is below this (84°) are sucked by less.
+pub(crate) const STEEP: f64 = 0.1;
+
+/// Layers of faces are no nearer than this, in radii of the mouth.
+pub(crate) const APART: f64 = 1e-4;
+
+/// The middle of a face's corners, of which a triangle has its last twice (m).
+fn centroid(corners: &[DVec3; 4]) -> DVec3 {
+    let count = if corners[2] == corners[3] { 3 } else { 4 };
+    corners[..count].iter().sum::<DVec3>() / count as f64
 }
 
 /// The share that a mark of a face stands for.

@@ -7,6 +7,7 @@ use crate::scene::schema::Curve;
 use crate::tools::{Geometry, closest_approach};
 use bevy_ecs::prelude::*;
 use glam::{DMat3, DQuat, DVec3};
+use std::collections::BTreeMap;
 
 columns! {
     /// What tools do to the nodes that they may touch: for each of [`ToolContacts::rows`] and each of its tools
@@ -22,6 +23,11 @@ pub const TOUCH_NUMBERS: usize = 7;
 
 /// Numbers more where a hand moves one of the body's tools.
 pub const FELT_NUMBERS: usize = 3;
+
+/// Guided tools with which nothing is done, by name: the first of six slots of [`Signals`](super::Signals). They are
+/// drawn and told of where they are.
+#[derive(Resource, Clone, Debug, Default)]
+pub(crate) struct IdleTools(pub BTreeMap<String, usize>);
 
 /// Where a tool is: a point y of its own is at rotation · y + at (m).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,6 +102,11 @@ pub struct Hand {
 pub type Key = (f64, DVec3, DQuat);
 
 impl ToolMotion {
+    /// Where it is meant to be at a time (s), by the values of its curves.
+    pub fn meant(&self, time: f64) -> Pose {
+        self.pose(time, |number| self.curves[number].value(time))
+    }
+
     /// Where it is at a time (s) with such factors of its curves.
     pub fn pose(&self, time: f64, factor: impl Fn(usize) -> f64) -> Pose {
         let (mut at, mut turn) = self.on_path(time);

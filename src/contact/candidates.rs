@@ -6,7 +6,7 @@ use super::surfaces::{Placed, Surfaces};
 use crate::mesh::OnTriangle;
 use glam::DVec3;
 
-/// Nearer than this to a triangle is on it, in edges.
+/// Nearer than this to a triangle is on it, in edges, the smaller of its body's and the point's.
 pub(super) const ON_IT: f64 = 1e-3;
 
 /// What is at less than this of another distance is nearer, whatever rounding does.
@@ -55,7 +55,6 @@ pub(super) struct Candidates<'a, 'k> {
     at: DVec3,
     pub(super) listed: Listed<'a>,
     kept: &'k mut Vec<Nearest>,
-    edge: f64,
 }
 
 impl<'a, 'k> Candidates<'a, 'k> {
@@ -65,11 +64,10 @@ impl<'a, 'k> Candidates<'a, 'k> {
         (surfaces, now): (&'a Surfaces, Placed<'a>),
         at: DVec3,
         listed: Listed<'a>,
-        edge: f64,
         kept: &'k mut Vec<Nearest>,
     ) -> Self {
         kept.clear();
-        Self { surfaces, now, at, listed, kept, edge }
+        Self { surfaces, now, at, listed, kept }
     }
 
     /// Finds beforehand where a triangle is nearest.
@@ -108,12 +106,6 @@ impl<'a, 'k> Candidates<'a, 'k> {
         }
     }
 
-    /// Whether the point is in front or behind of a triangle, or on it, and not beside.
-    #[inline]
-    pub(super) fn is_before(&self, (found, distance): &(OnTriangle, f64)) -> bool {
-        found.part == 0 || *distance <= ON_IT * self.edge
-    }
-
     /// Whether a triangle found beforehand that shares a part of one is nearer than a distance, by so much (both m).
     #[inline]
     fn shows_nearer(&self, triangle: u32, part: usize, (by, distance): (f64, f64)) -> bool {
@@ -129,8 +121,8 @@ impl<'a, 'k> Candidates<'a, 'k> {
     }
 
     /// How far the point is outside of a triangle, whose nearest place is known; `None` where another triangle must be
-    /// nearer, and of triangles without area.
-    pub(super) fn outside(&self, triangle: u32, (found, distance): (OnTriangle, f64)) -> Option<Facing> {
+    /// nearer, and of triangles without area. `edge` is the length of an edge (m).
+    pub(super) fn outside(&self, triangle: u32, (found, distance): (OnTriangle, f64), edge: f64) -> Option<Facing> {
         let normal = self.surfaces.normal_now(self.now, triangle);
         if normal == DVec3::ZERO || !found.at.is_finite() {
             return None;
@@ -138,7 +130,8 @@ impl<'a, 'k> Candidates<'a, 'k> {
         let off = self.at - found.at;
         let facing =
             |normal: DVec3, gap: f64| Some(Facing { triangle, weights: found.weights, at: found.at, normal, gap });
-        if self.is_before(&(found, distance)) {
+        // in front or behind of it, or on it, and not beside
+        if found.part == 0 || distance <= ON_IT * edge {
             return facing(normal, off.dot(normal));
         }
         // the surface around a place that is nearest is nowhere nearer: not the flat surroundings of a point's own, nor
@@ -152,8 +145,9 @@ impl<'a, 'k> Candidates<'a, 'k> {
         }
     }
 
-    /// Whether a triangle that is in nobody's way stays so, however far nodes move that a shortlist allows for.
-    pub(super) fn stays_away(&self, place: usize, reach: f64, stays: Stays) -> bool {
+    /// Whether a triangle that is in nobody's way stays so, however far nodes move that a shortlist allows for. `edge`
+    /// is the length of an edge (m).
+    pub(super) fn stays_away(&self, place: usize, (reach, edge): (f64, f64), stays: Stays) -> bool {
         let Stays { moved, reach: more } = stays;
         if self.listed.is_far(place) {
             return self.listed.distance(place) > self.listed.farthest + more + self.listed.nearer + moved;
@@ -164,7 +158,7 @@ impl<'a, 'k> Candidates<'a, 'k> {
             return true;
         }
         // both distances change by no more than that
-        distance - moved > ON_IT * self.edge
+        distance - moved > ON_IT * edge
             && found.keeps_part(self.at, self.surfaces.corners(self.now.places, triangle), moved)
             && self.goes_on_nearer(triangle, found.part, (moved, NEARER * (distance - moved)))
     }

@@ -11,8 +11,8 @@ use smallvec::{SmallVec, smallvec};
 /// Surfaces face one another where the cosine between their normals is below this.
 pub const TURNED_AWAY: f64 = 0.2;
 
-/// What counts for nothing of a distance between two faces that are in a point's way, in edges: there the one that it
-/// faces more is. Nor is a wall one that rises no higher beside a point of a face.
+/// What counts for nothing of a distance between two faces that are in a point's way, in edges, the smallest of those
+/// of the bodies: there the one that it faces more is. Nor is a wall one that rises no higher beside a point of a face.
 pub(super) const ALIKE: f64 = 0.05;
 
 /// Two faces are a corner where the cosine between their normals is below this (30°).
@@ -66,12 +66,12 @@ impl Surfaces {
     /// What a point faces whose shortlist is known: where all triangles that matter but one at most are far off, beside
     /// another or behind a rim, and the point is in front of that one, as for most. Whether that is all there is to it.
     /// Nothing has come nearer since lists were made than by `nearer`, and faces are looked at that are no farther than
-    /// `reach` (m); `edge` is the length of an edge (m).
+    /// `reach` (m); `edge` is the length of an edge (m), of a triangle's body or the point's.
     #[inline]
     pub fn faced_at_a_glance(
         &self,
         (now, point, short): (Placed<'_>, &Point, &Shortlist),
-        (nearer, reach, edge): (f64, impl Fn(u32) -> f64, f64),
+        (nearer, reach, edge): (f64, impl Fn(u32) -> f64, impl Fn(u32) -> f64),
         (faced, own): (&mut Faced, &mut Own),
     ) -> bool {
         let Some(triangles) = short.triangles() else { return false };
@@ -90,7 +90,7 @@ impl Surfaces {
             if distance > within[0] && distance > within[1] {
                 continue;
             }
-            if found.part != 0 && distance > ON_IT * edge {
+            if found.part != 0 && distance > ON_IT * edge(triangle) {
                 beside |= 1 << number;
             } else if only.replace((number, found, within)).is_some() {
                 return false;
@@ -115,7 +115,7 @@ impl Surfaces {
             return true;
         }
         let facing = Facing { triangle: triangles[number], weights, at: nearest, normal, gap };
-        if short.may_have_rim(number) && self.is_at_rim(now, &facing, edge) {
+        if short.may_have_rim(number) && self.is_at_rim(now, &facing, edge(facing.triangle)) {
             return false;
         }
         let is_turned_away = match point.triangle {
@@ -148,19 +148,19 @@ impl Surfaces {
 
     /// What a point faces among the triangles of its list that are no farther than `reach` (m), and which of them
     /// matter as long as nodes move no farther than a shortlist allows for; where that is known, the others are not
-    /// looked at. `edge` is the length of an edge (m).
+    /// looked at. `edge` is the length of an edge (m), of a triangle's body or the point's.
     #[inline(never)] // all points would make room for what few need
     pub fn faced(
         &self,
         (now, point): (Placed<'_>, &Point),
         listed: Listed<'_>,
-        (reach, edge): (impl Fn(u32) -> f64, f64),
+        (reach, edge): (impl Fn(u32) -> f64, impl Fn(u32) -> f64),
         (short, stays): (&mut Shortlist, Stays),
         (faced, kept): (&mut Faced, &mut Kept),
     ) {
         let Kept { nearest, around } = kept;
-        let mut candidates = Candidates::new((self, now), point.place(now.places), listed, edge, nearest);
-        let (triangles, waiting) = (listed.triangles, None);
+        let mut candidates = Candidates::new((self, now), point.place(now.places), listed, nearest);
+        let (triangles, waiting, edge) = (listed.triangles, None, &edge);
         let mut way = Way { surfaces: self, now, point, triangles, edge, own: None, waiting, faced: [None; 2] };
         let mut wakes = f64::INFINITY;
         let mut look = |candidates: &Candidates<'_, '_>, number: usize, triangle: u32| {
@@ -171,7 +171,7 @@ impl Surfaces {
             if distance > reach && distance > depth {
                 return;
             }
-            match candidates.outside(triangle, (found, distance)) {
+            match candidates.outside(triangle, (found, distance), edge(triangle)) {
                 Some(facing) if facing.gap >= -depth && facing.gap <= reach => way.see(facing),
                 _ => {}
             }
@@ -183,7 +183,10 @@ impl Surfaces {
             }
             None => {
                 candidates.find_listed();
-                let away = |place: usize| candidates.stays_away(place, reach(listed.triangles[place]), stays);
+                let away = |place: usize| {
+                    let triangle = listed.triangles[place];
+                    candidates.stays_away(place, (reach(triangle), edge(triangle)), stays)
+                };
                 let nearest = |place: usize| match listed.is_far(place) {
                     true => listed.distance(place),
                     false => candidates.nearest(place).1 - listed.nearer,
@@ -251,22 +254,24 @@ fn in_way(facing: &Facing, turned: f64, edge: f64) -> f64 {
 }
 
 /// The faces that are in a point's way, of those seen so far.
-struct Way<'a> {
+struct Way<'a, E> {
     surfaces: &'a Surfaces,
     now: Placed<'a>,
     point: &'a Point,
     /// The triangles that may be near it.
     triangles: &'a [u32],
-    edge: f64,
+    /// The length of an edge (m), of a triangle's body or the point's.
+    edge: &'a E,
     /// The point's own normal, once somebody has asked for it.
     own: Option<DVec3>,
     /// The first that was seen, before anything is asked of it: most points see no other.
     waiting: Option<Facing>,
-    /// The one that is most in its way with by how much, and a wall of a corner with the first.
+    /// The one that is most in its way, and a wall of a corner with the first, each with the cosine between its normal
+    /// and the point's own.
     faced: [Option<(Facing, f64)>; 2],
 }
 
-impl Way<'_> {
+impl<E: Fn(u32) -> f64> Way<'_, E> {
     fn see(&mut self, facing: Facing) {
         if self.waiting.is_none() && self.own.is_none() {
             self.waiting = Some(facing);
@@ -289,16 +294,24 @@ impl Way<'_> {
         if turned >= TURNED_AWAY {
             return;
         }
-        let is_corner = |first: &Facing, second: &Facing| surfaces.is_corner(now.places, point, [first, second], edge);
-        let way = in_way(&facing, turned, edge);
-        let least = self.faced.map(|of| of.map_or(f64::INFINITY, |(_, way)| way));
-        if way < least[0] {
+        // of two bodies' faces the smaller one, so that neither is favoured
+        let of_both = |one: &Facing, other: &Facing| f64::min(edge(one.triangle), edge(other.triangle));
+        let is_corner = |first: &Facing, second: &Facing| {
+            surfaces.is_corner(now.places, point, [first, second], of_both(first, second))
+        };
+        let [is_first, is_second] = self.faced.map(|of| {
+            of.is_none_or(|(other, of_other)| {
+                let edge = of_both(&facing, &other);
+                in_way(&facing, turned, edge) < in_way(&other, of_other, edge)
+            })
+        });
+        if is_first {
             if self.faced[0].is_some_and(|(other, _)| is_corner(&facing, &other)) {
                 self.faced[1] = self.faced[0];
             }
-            self.faced[0] = Some((facing, way));
-        } else if way < least[1] {
-            self.faced[1] = Some((facing, way));
+            self.faced[0] = Some((facing, turned));
+        } else if is_second {
+            self.faced[1] = Some((facing, turned));
         }
         if let [Some((first, _)), Some((second, _))] = &self.faced
             && !is_corner(first, second)
@@ -312,6 +325,7 @@ impl Way<'_> {
         let Self { surfaces, now, point, edge, .. } = *self;
         // of its own body it may be a face beside its own
         let is_own = surfaces.bodies[facing.triangle as usize] == point.body;
+        let edge = edge(facing.triangle);
         if is_own && facing.normal.dot(own) >= TURNED_AWAY || !surfaces.is_at_rim(now, &facing, edge) {
             return Some(facing);
         }
@@ -326,7 +340,7 @@ impl Way<'_> {
     /// What is in its way: where only one was seen, that it is turned away is all that is asked.
     fn finish(mut self) -> [Option<Facing>; 2] {
         if let Some(only) = self.waiting.take() {
-            let at_rim = self.surfaces.is_at_rim(self.now, &only, self.edge);
+            let at_rim = self.surfaces.is_at_rim(self.now, &only, (self.edge)(only.triangle));
             if self.point.triangle.is_none()
                 && !at_rim
                 && self.surfaces.all_turned_away(self.now, self.point.nodes[0], only.normal)

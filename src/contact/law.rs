@@ -69,7 +69,8 @@ impl Contact {
             rubbing: DVec3::ZERO,
             slid: 0.0,
             work: 0.0,
-            slides: false,
+            // what nothing holds
+            slides: true,
             springs: false,
             point: 0,
             is_first: false,

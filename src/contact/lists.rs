@@ -22,7 +22,8 @@ pub struct Lists {
     pub triangles: Vec<u32>,
     /// How far each is from the point at least (m): rounded down, so that nobody is taken to be farther than it is.
     pub distances: Vec<f32>,
-    /// All triangles that were so near to a point are in its list (m); more than was asked for where there are none.
+    /// All triangles that were so near to a point are in its list (m), and of each body as much beyond as the finder
+    /// has it; more than was asked for where there are none.
     pub radius: f64,
 }
 
@@ -37,6 +38,8 @@ pub struct Finder<'a> {
     pub meets: &'a (dyn Fn(u32, u32, bool) -> bool + Sync),
     /// Pairs of a point and a triangle that are never in each other's way, ascending.
     pub apart: &'a [(u32, u32)],
+    /// How much farther than others triangles of each body are looked for (m).
+    pub beyond: &'a [f64],
 }
 
 impl Lists {
@@ -60,7 +63,7 @@ impl Lists {
         self.starts[place] as usize..self.starts[place + 1] as usize
     }
 
-    /// Finds all triangles within a radius (m) of points, in a tree a body.
+    /// Finds all triangles within a radius (m) of points and what is beyond, in a tree a body.
     pub fn find(finder: &Finder<'_>, trees: &[Tree], places: &[DVec3], radius: f64, cpu: &Cpu) -> Self {
         let task = |task: usize| {
             let mut counts: Vec<(u32, u32)> = Vec::new();
@@ -71,7 +74,8 @@ impl Lists {
                 let (at, before) = (point.place(places), found.len());
                 let of_face = point.triangle.is_some();
                 let met = trees.iter().zip(0..).filter(|(_, body)| (finder.meets)(point.body, *body, of_face));
-                for (tree, _) in met {
+                for (tree, body) in met {
+                    let radius = radius + finder.beyond[body as usize];
                     tree.near(at, radius, |triangle| {
                         let corners = finder.surfaces.corners(places, triangle);
                         let [a, b, c] = corners;
@@ -119,12 +123,16 @@ impl Finder<'_> {
             && (self.apart.is_empty() || self.apart.binary_search(&(number, triangle)).is_err())
     }
 
-    /// How far the boxes of bodies that may meet are apart (m); 0 where one may meet itself.
+    /// How far the boxes of bodies that may meet are apart (m), less what is beyond; 0 where one may meet itself.
     fn apart_by(&self, trees: &[Tree]) -> f64 {
         let bodies = || (0..).zip(trees);
         let pairs = bodies().flat_map(|(a, of_a)| bodies().map(move |(b, of_b)| (a, of_a, b, of_b)));
         let meeting = pairs.filter(|&(a, _, b, _)| (self.meets)(a, b, false) || (self.meets)(a, b, true));
-        meeting.map(|(a, of_a, b, of_b)| if a == b { 0.0 } else { of_a.distance(of_b) }).fold(f64::INFINITY, f64::min)
+        let apart = |(a, of_a, b, of_b): (u32, &Tree, u32, &Tree)| match a == b {
+            true => 0.0,
+            false => of_a.distance(of_b) - self.beyond[b as usize],
+        };
+        meeting.map(apart).fold(f64::INFINITY, f64::min)
     }
 
     fn is_of_point(&self, point: &Point, triangle: u32) -> bool {

@@ -5,6 +5,7 @@ use super::facing::{ALIKE, Facing, TURNED_AWAY};
 use super::surfaces::{Placed, Surfaces};
 use crate::mesh::OnTriangle;
 use glam::DVec3;
+use smallvec::SmallVec;
 
 /// Flanks of a rim where the cosine between the normals is below this (60°).
 const RIM: f64 = 0.5;
@@ -23,7 +24,7 @@ pub(super) struct AtRim<'a> {
     pub of_triangles: &'a [DVec3],
     /// The triangles that may be near it, ascending.
     pub listed: &'a [u32],
-    /// The length of an edge (m).
+    /// The length of an edge (m), the smaller of its body's and the face's.
     pub edge: f64,
 }
 
@@ -36,9 +37,9 @@ impl AtRim<'_> {
 
 impl Surfaces {
     /// What a point faces that sees a face near its rim: the flank there that it faces more, as a plane that ends at
-    /// the rim; nothing where the point is farther beyond that than it is outside. As it is seen where the point is
-    /// well behind that flank, so that the face is a wall before it. `None` where nothing of it is in the point's way,
-    /// or where another face is that sees it, too.
+    /// the rim, where other flanks begin to see it; nothing where the point is farther beyond that than it is outside.
+    /// As it is seen where the point is well behind that flank, so that the face is a wall before it. `None` where
+    /// nothing of it is in the point's way, or where another face is that sees it, too.
     ///
     /// Without this what slides over a flat surface catches at it: nodes of that are before the slider's front wall,
     /// too, as high above its rim as rounding has it, or what is sunk in. Where the point is at a rim of its own that
@@ -53,8 +54,12 @@ impl Surfaces {
         let deep = |triangle: u32| -f64::min(ALIKE * edge, self.depths[triangle as usize]);
         let (normal, outside) = outside_of(facing.triangle);
         let (toward, toward_least) = (own.dot(normal), point.least(normal));
-        // the one that it faces most, of equal ones the nearest, and how much what it faces least
+        // the one that it faces most, of equal ones the nearest, how much what it faces least, and those that see it
         let (mut most, mut best, mut least) = (None, f64::INFINITY, f64::NEG_INFINITY);
+        let mut seen_by: SmallVec<[u32; 8]> = SmallVec::new();
+        if outside > ON_IT * edge {
+            seen_by.push(facing.triangle);
+        }
         for (other, of_other) in self.flanks(now, &facing, edge) {
             let distance = at.distance(OnTriangle::nearest(at, self.corners(now.places, other)).at);
             // what is as near is in every list
@@ -62,6 +67,9 @@ impl Surfaces {
                 continue;
             }
             let (turned, turned_least) = (own.dot(of_other), point.least(of_other));
+            if outside_of(other).1 > ON_IT * edge {
+                seen_by.push(other);
+            }
             if turned_least <= FLUSH && toward_least <= LOOKS {
                 let outside_of_other = outside_of(other).1;
                 if outside_of_other > deep(other) && f64::min(outside, outside_of_other) < ALIKE * edge {
@@ -87,7 +95,8 @@ impl Surfaces {
         let (below, corners) = (at - gap * normal, self.corners(now.places, triangle));
         let beyond = below.distance(OnTriangle::nearest(below, corners).at);
         let is_other = triangle != facing.triangle;
-        if beyond >= ON_IT * edge {
+        // the wall of a face that leans is behind itself: what no other flank sees is in the body
+        if beyond >= ON_IT * edge && seen_by.iter().any(|&other| other != triangle) {
             // farther beyond it is kept off the rim, as by a thickness
             return (!is_other && gap > beyond).then_some(facing);
         }

@@ -6,11 +6,12 @@ use crate::components::{
     Alive, Authoring, Block, Column, ConstrainedAxes, Displacement, Energies, Label, RestPosition,
 };
 use crate::error::Error;
+use crate::math::turned;
 use crate::observation::{ToolReading, field_of, header, way_of};
 use crate::scene::schema::OutputField;
 use crate::{SceneFile, Simulation};
 use bevy_ecs::prelude::*;
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -174,7 +175,7 @@ impl Look {
 
     fn tool(&self, name: &str, simulation: &mut Simulation) -> ToolState {
         let [place, turn] = way_of(simulation.world_mut(), name, false);
-        let rotation = DQuat::from_scaled_axis(turn * (std::f64::consts::PI / 180.0));
+        let rotation = turned(turn);
         let felt = self.measured.tools.get(name).cloned().unwrap_or_default();
         ToolState { name: name.into(), place, rotation, felt }
     }

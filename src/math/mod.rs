@@ -12,6 +12,7 @@ mod rows;
 mod simd;
 mod tensor;
 mod trigonometry;
+mod turn;
 
 pub use real::{Real, Scalar};
 pub use simd::SimdScalar;
@@ -30,3 +31,4 @@ pub use rows::{Rows, Scratch};
 pub use simd::{F32s, F64s, LANES, lane_place};
 #[doc(hidden)]
 pub use tensor::{dot, dot_plus, minor};
+pub(crate) use turn::{degrees, radians, shorter, turned};

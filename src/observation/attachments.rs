@@ -63,7 +63,7 @@ fn of_suture(suture: &Suture, reference: DVec3, world: &World) -> Option<Attachm
     let state = world.get::<SutureState>(suture.ends[0].body)?;
     let at = SUTURE_NUMBERS * suture.place;
     let (tension, length) = (state.get(at + 2), state.get(at + 3));
-    let [from, to] = [0, 1].map(|end| at_beginning(&suture.ends[end], reference, world));
+    let [from, to] = [0, 1].map(|end| when_pulled(&suture.ends[end], reference, world));
     let holds = state.get(at) == 0.0;
     Some(AttachmentReading {
         force: (to - from).normalize_or_zero() * tension,
@@ -76,16 +76,18 @@ fn of_suture(suture: &Suture, reference: DVec3, world: &World) -> Option<Attachm
     })
 }
 
-/// Where an end was at the beginning of the last step (m, from a reference).
-fn at_beginning(end: &Anchor, reference: DVec3, world: &World) -> DVec3 {
+/// Where an end was when forces acted (m, from a reference): at the beginning of the last step, of implicit ones at its
+/// end.
+fn when_pulled(end: &Anchor, reference: DVec3, world: &World) -> DVec3 {
     let columns = (
         world.get::<RestPosition>(end.body),
         world.get::<Displacement>(end.body),
         world.get::<DisplacementIncrement>(end.body),
     );
     let (Some(rest), Some(u), Some(step)) = columns else { return DVec3::ZERO };
+    let clock = world.resource::<Clock>();
     // before the first step the column of steps holds the velocity
-    let back = if world.resource::<Clock>().step > 0 { 1.0 } else { 0.0 };
+    let back = if clock.step > 0 && !clock.velocities_at_ends { 1.0 } else { 0.0 };
     let of = |&(row, weight): &(u32, f64)| {
         let row = row as usize;
         weight * (rest.0[row] - reference + u.vector(row) - step.vector(row) * back)

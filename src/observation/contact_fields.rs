@@ -105,8 +105,8 @@ fn into_surface(force: DVec3, along: DVec3) -> f64 {
     -force.dot(along.normalize_or_zero())
 }
 
-/// Gap (m) and length slid (m) of each node, in the author's order: of points of faces what those around a node have in
-/// the mean, by its weights.
+/// Gap (m) and length slid (m) of each node, in the author's order: of points of faces the least gap and the longest
+/// length of those around a node. A mean would follow which of them face anything, as those beyond an edge do at times.
 fn gaps_and_slips(body: Entity, surface: &[FacetNow], world: &mut World) -> Result<Vec<[f64; 2]>, Error> {
     let wanted = [SurfaceTouch::NAME, FaceTouch::NAME, ToolTouch::NAME];
     bring_to_host(world, |entity, name| entity == body && wanted.contains(&name))?;
@@ -114,18 +114,13 @@ fn gaps_and_slips(body: Entity, surface: &[FacetNow], world: &mut World) -> Resu
     let entity = world.entity(body);
     let Some(authoring) = entity.get::<Authoring>() else { return Ok(Vec::new()) };
     let count = authoring.node_rows.len();
-    // sums of weights, and with these of gaps where something is faced and of lengths
-    let (mut near, mut all) = (vec![[0.0; 2]; count], vec![[0.0; 2]; count]);
-    let mut add = |node: usize, weight: f64, touch: &Reals, first: usize| {
+    let mut found = vec![[f64::INFINITY, 0.0]; count];
+    let mut add = |node: usize, touch: &Reals, first: usize| {
+        let [gap, slid] = &mut found[node];
         if touch.get(first + 4) > 0.0 {
-            near[node][0] += weight;
-            near[node][1] += weight * touch.get(first + 5);
+            *gap = gap.min(touch.get(first + 5));
         }
-        // points on other sides of an edge, that never touched anything, say nothing of how far it slid
-        if touch.get(first + 4) > 0.0 || touch.get(first + 6) > 0.0 {
-            all[node][0] += weight;
-            all[node][1] += weight * touch.get(first + 6);
-        }
+        *slid = slid.max(touch.get(first + 6));
     };
     if let Some(touch) = entity.get::<FaceTouch>() {
         let counted = surface.iter().map(|of| (of.facet, face_points(of.facet).len()));
@@ -134,13 +129,14 @@ fn gaps_and_slips(body: Entity, surface: &[FacetNow], world: &mut World) -> Resu
         for (facet, first) in surface.iter().zip(firsts) {
             for (place, weights) in (first..room).zip(face_points(facet.facet)) {
                 let of_point = MEETING_NUMBERS * place;
-                facet.nodes.iter().zip(weights).for_each(|(&node, &weight)| add(node, weight, touch, of_point));
+                let around = facet.nodes.iter().zip(weights).filter(|(_, weight)| **weight > 0.0);
+                around.for_each(|(&node, _)| add(node, touch, of_point));
             }
         }
     }
     if let Some(touch) = entity.get::<SurfaceTouch>() {
         for (node, &row) in authoring.node_rows.iter().enumerate() {
-            add(node, 1.0, touch, MEETING_NUMBERS * row as usize);
+            add(node, touch, MEETING_NUMBERS * row as usize);
         }
     }
     let mut slid = vec![0.0; count];
@@ -151,8 +147,11 @@ fn gaps_and_slips(body: Entity, surface: &[FacetNow], world: &mut World) -> Resu
             slid[row as usize] = (0..contacts.tools.len()).map(of_tool).sum();
         }
     }
-    let mean = |[weight, sum]: [f64; 2], other: f64| if weight > 0.0 { sum / weight } else { other };
-    let of_node = |(node, &row): (usize, &u32)| [mean(near[node], nowhere), mean(all[node], 0.0) + slid[row as usize]];
+    super::free_tools::add_slips(world, body, &mut slid);
+    let of_node = |(node, &row): (usize, &u32)| {
+        let [gap, longest] = found[node];
+        [if gap.is_finite() { gap } else { nowhere }, longest + slid[row as usize]]
+    };
     Ok(authoring.node_rows.iter().enumerate().map(of_node).collect())
 }
 

@@ -58,7 +58,9 @@ pub(super) fn beyond_bound(world: &World) -> Option<(String, f64)> {
 /// `None` where nothing may touch.
 pub(super) fn loss(world: &mut World) -> Result<Option<f64>, Error> {
     let wanted = [SurfaceTouch::NAME, FaceTouch::NAME, ToolTouch::NAME, ToolHold::NAME];
-    bring_to_host(world, |_, name| wanted.contains(&name))?;
+    // what free tools do to nodes
+    let steps = world.contains_resource::<FreeTools>();
+    bring_to_host(world, |_, name| wanted.contains(&name) || steps && name == DisplacementIncrement::NAME)?;
     let every =
         |of: &Reals, number: usize, stride: usize| (number..of.len()).step_by(stride).map(|at| of.get(at)).sum();
     let mut losses: Vec<f64> = Vec::new();

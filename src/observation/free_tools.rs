@@ -37,10 +37,11 @@ pub(super) fn read(world: &World, name: &str) -> Option<ToolReading> {
         torque: moment + (center - earlier.at).cross(force),
         place: pose.at + reference,
         nodes: state.touches.len(),
+        slipped: 0,
         penetration: penetration(world, tool, &pose, reference),
         suction: DVec3::ZERO,
         work: -state.contact_work,
-        loss: state.contact_loss,
+        loss: lost(world, tool, state),
         free: Some(free),
     })
 }
@@ -92,10 +93,31 @@ pub(super) fn add_forces(world: &World, body: Entity, forces: &mut [DVec3]) {
     }
 }
 
-/// What contact with each has taken since the start (J).
+/// How far the nodes of a body have slipped along free tools since the start (m), added to its rows.
+pub(super) fn add_slips(world: &World, body: Entity, slid: &mut [f64]) {
+    let (tools, motions) = (world.get_resource::<FreeTools>(), world.get_resource::<FreeMotions>());
+    let Some((tools, motions)) = tools.zip(motions) else { return };
+    for (tool, state) in tools.all.iter().zip(&motions.all) {
+        for &((place, row), length) in &state.slid {
+            if tool.meets[place as usize].body == body {
+                slid[row as usize] += length;
+            }
+        }
+    }
+}
+
+/// What contact with each has taken since the start (J). Steps of nodes are on the host.
 pub(super) fn losses(world: &World) -> Vec<f64> {
-    let motions = world.get_resource::<FreeMotions>();
-    motions.map_or(Vec::new(), |motions| motions.all.iter().map(|state| state.contact_loss).collect())
+    let (tools, motions) = (world.get_resource::<FreeTools>(), world.get_resource::<FreeMotions>());
+    let Some((tools, motions)) = tools.zip(motions) else { return Vec::new() };
+    tools.all.iter().zip(&motions.all).map(|(tool, state)| lost(world, tool, state)).collect()
+}
+
+/// What contact with one has taken since the start (J), with the second half of what forces on nodes did in their last
+/// step.
+fn lost(world: &World, tool: &FreeTool, state: &FreeMotion) -> f64 {
+    let step = |body, row| world.get::<DisplacementIncrement>(body).map_or(DVec3::ZERO, |steps| steps.vector(row));
+    state.contact_loss - state.work_of_half(tool, world.resource::<Clock>().time_step, step)
 }
 
 /// Kinetic energy of all (J).

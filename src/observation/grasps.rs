@@ -15,13 +15,17 @@ pub(super) fn read(world: &mut World, tool: &str, now: &[(usize, Pose)], reading
             let Some(pose) = now.iter().find(|(slot, _)| *slot == grasp.tool.signal).map(|(_, pose)| *pose) else {
                 continue;
             };
-            reading.place = pose.at + grasps.reference;
             for (place, &row) in grasps.rows.iter().enumerate() {
                 let (first, row) = (grasps.numbers() * place + grasps.numbers_a_grasp() * number, row as usize);
                 reading.work += hold.get(first + 4);
                 reading.loss += hold.get(first + 5);
                 // nodes whose elements are gone are held by nobody
-                if hold.get(first + 3) == 1.0 && mass.get(row) > 0.0 {
+                if mass.get(row) <= 0.0 {
+                    continue;
+                }
+                let holds = hold.get(first + 3);
+                reading.slipped += usize::from(ToolHold::has_slipped(holds));
+                if holds == ToolHold::HELD {
                     let force = -hold.vector_at(first);
                     let begin = rest.0[row] - grasps.reference + u.vector(row) - back * step.vector(row);
                     reading.nodes += 1;

@@ -24,7 +24,9 @@ const OVERFLOW: &str = "a motion, load or modulus beyond what numbers can expres
 const MADE_BY_CONTACT: &str = "an error of the engine, which is worth a report with the scene";
 /// Parts that hold less than this share of all energy are not asked for their hourglass energy.
 const WORTH_CHECKING: f64 = 1e-3;
-/// Shares of hourglass energy are told up to this one: elastic energy may be next to none.
+/// Shares of hourglass energy are told up to the first in words, and up to the second as numbers: elastic energy may be
+/// next to none.
+const MOST_TOLD: f64 = 10.0;
 const MOST_SHARE: f64 = 1e6;
 
 /// How a scene wants to be guarded.
@@ -244,11 +246,14 @@ fn hourglass(memory: &mut GuardMemory, seen: &Sample, settings: &GuardSettings, 
         let worst = memory.hourglass.entry(part.clone()).or_default();
         *worst = worst.max(share);
         if share > limit && !settings.limits.off.contains(&Guard::Hourglass) {
+            let holds = match share <= MOST_TOLD {
+                true => format!("{:.0} % of", 100.0 * share),
+                false => format!("more than {MOST_TOLD} times"),
+            };
             let message = format!(
-                "hourglass control of {part} holds {:.0} % of the part's elastic energy ({:.0} % are a warning, \
+                "hourglass control of {part} holds {holds} the part's elastic energy ({:.0} % are a warning, \
                  guards.hourglass): motion that elements with one point do not feel; use Hex8MeanDilatation, a finer mesh, \
                  or spread the load over more nodes",
-                100.0 * share,
                 100.0 * limit
             );
             warn(memory, world, "hourglass", &part, share, limit, message);

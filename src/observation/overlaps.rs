@@ -29,14 +29,13 @@ struct Overlap {
 
 /// A body as it is now.
 struct Placed<'a> {
+    body: Entity,
     label: &'a str,
     authoring: &'a Authoring,
     /// In the author's order (m).
     points: Vec<DVec3>,
     low: DVec3,
     high: DVec3,
-    /// Whether contact keeps it away from others.
-    meets: bool,
 }
 
 /// Looks for pairs of bodies that overlap, and for tools in bodies, and warns once of each. Boxes around bodies are
@@ -73,7 +72,7 @@ pub(super) fn check(world: &mut World) -> Result<(), Error> {
             let found = overlap(&near_a, &near_b, a, b).map(|found| (found, a, b));
             let found = found.or_else(|| overlap(&near_b, &near_a, b, a).map(|found| (found, b, a)));
             if let Some((found, one, other)) = found {
-                let message = message(&found, one.label, other.label, one.meets && other.meets);
+                let message = message(&found, one.label, other.label, Kept::of(world, [one.body, other.body]));
                 let criterion = OVERLAP.to_string();
                 memory.warnings.push(Notice { criterion, part, time, step, value: 1.0, limit: 0.0, message });
             }
@@ -84,16 +83,44 @@ pub(super) fn check(world: &mut World) -> Result<(), Error> {
     Ok(())
 }
 
-fn message(found: &Overlap, one: &str, other: &str, meet: bool) -> String {
+/// What keeps two bodies apart.
+enum Kept {
+    Contact,
+    Glue,
+    Nothing,
+}
+
+impl Kept {
+    fn of(world: &World, pair: [Entity; 2]) -> Self {
+        let meets = world.get::<Meets>(pair[0]).is_some_and(|meets| meets.0.contains(&pair[1]));
+        let tied = |glue: &Glue| {
+            glue.ties.iter().any(|tie| pair.iter().all(|body| tie.bodies.map(|of| glue.bodies[of]).contains(body)))
+        };
+        if meets {
+            Self::Contact
+        } else if world.get_resource::<Glue>().is_some_and(tied) {
+            Self::Glue
+        } else {
+            Self::Nothing
+        }
+    }
+}
+
+fn message(found: &Overlap, one: &str, other: &str, kept: Kept) -> String {
     let at = message_at(found.at);
     let Overlap { node, element, .. } = found;
     format!(
         "{one} and {other} overlap at ({at}) m: the surface of {one} at its node {node} is in element {element} of {other}; {}",
-        match meet {
-            true =>
+        match kept {
+            Kept::Contact =>
                 "contact has let them: finer faces, `points: Faces`, `sweeps` or slower motion keep them apart better"
                     .into(),
-            false => format!("nothing keeps them apart: `contacts: [Between(bodies: (\"{one}\", \"{other}\"))]` does"),
+            Kept::Glue =>
+                "they are glued or tied, at some of their points, and between these faces bend or are bent as they \
+                 are: finer faces there overlap less"
+                    .into(),
+            Kept::Nothing =>
+                format!("nothing keeps them apart: `contacts: [Between(bodies: (\"{one}\", \"{other}\"))]` does"),
         }
     )
 }
@@ -110,8 +137,7 @@ fn place(world: &World, entity: Entity) -> Option<Placed<'_>> {
     let points: Vec<DVec3> = authoring.node_rows.iter().map(point).collect();
     let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-    let meets = world.get::<ContactForce>(entity).is_some();
-    Some(Placed { label: &world.get::<Label>(entity)?.0, authoring, points, low, high, meets })
+    Some(Placed { body: entity, label: &world.get::<Label>(entity)?.0, authoring, points, low, high })
 }
 
 /// The elements of a body that are there and reach into a box, with their places in the author's order and those of

@@ -1,9 +1,9 @@
 //! What tools feel.
 
-use super::track::{degrees, shorter};
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::Error;
+use crate::math::{degrees, shorter};
 use bevy_ecs::prelude::*;
 use glam::{DQuat, DVec3};
 
@@ -18,6 +18,8 @@ pub struct ToolReading {
     pub place: DVec3,
     /// How many nodes it touches or holds.
     pub nodes: usize,
+    /// How many nodes slipped out of its grasps when these were closed last, as more than their `strength` held them.
+    pub slipped: usize,
     /// How deep the deepest of the nodes that it may touch is inside it (m); 0 where none is.
     pub penetration: f64,
     /// The part of the force that is of what it sucks (N).
@@ -75,6 +77,9 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
     // implicit steps have their forces at their ends
     let back = if clock.velocities_at_ends { 0.0 } else { 1.0 };
     let mut reading = ToolReading::default();
+    let of_tool =
+        slot_of(world, tool).and_then(|(slot, reference)| Some((now.iter().find(|of| of.0 == slot)?, reference)));
+    reading.place = of_tool.map_or(DVec3::ZERO, |((_, pose), reference)| pose.at + reference);
     let mut bodies =
         world.query::<(&ToolContacts, &ToolTouch, &Mass, &RestPosition, &Displacement, &DisplacementIncrement)>();
     for (contacts, touch, mass, rest, u, step) in bodies.iter(world) {
@@ -82,7 +87,6 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
             let Some(pose) = now.iter().find(|(slot, _)| *slot == contact.signal).map(|(_, pose)| *pose) else {
                 continue;
             };
-            reading.place = pose.at + contacts.reference;
             let ball = contact.geometry.bounding_sphere().map(|(center, radius)| (pose.place(center), radius));
             for (place, (&row, &mask)) in contacts.rows.iter().zip(&contacts.masks).enumerate() {
                 if mask >> number & 1 == 0 {
@@ -112,19 +116,9 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
             }
         }
     }
-    let place =
-        |slot: usize, reference: DVec3| now.iter().find(|(of, _)| *of == slot).map(|(_, pose)| pose.at + reference);
-    let mut takers = world.query::<&ToolRemovals>();
-    for removals in takers.iter(world) {
-        for removal in removals.all.iter().filter(|removal| removal.tool == tool) {
-            reading.place = place(removal.pose, removals.reference).unwrap_or(reading.place);
-        }
-    }
     let mut suctions = world.query::<(&Suction, &OfBody)>();
     for (suction, body) in suctions.iter(world).filter(|(suction, _)| suction.tool == tool) {
-        reading.place = place(suction.pose, suction.reference).unwrap_or(reading.place);
-        let at = reading.place;
-        if let Some((force, torque)) = suction_at(world, suction, body.0, at) {
+        if let Some((force, torque)) = suction_at(world, suction, body.0, reading.place) {
             reading.force += force;
             reading.torque += torque;
             reading.suction += force;
@@ -185,6 +179,8 @@ fn slot_of(world: &mut World, tool: &str) -> Option<(usize, DVec3)> {
         let of_tool = grasps.grasps.iter().filter(|grasp| grasp.tool.tool == tool);
         found.extend(of_tool.map(|grasp| (grasp.tool.signal, grasps.reference)));
     }
+    let idle = world.get_resource::<IdleTools>();
+    found.extend(idle.and_then(|IdleTools(all)| all.get(tool)).map(|&slot| (slot, DVec3::ZERO)));
     found.into_iter().min_by_key(|(slot, _)| *slot)
 }
 
@@ -210,11 +206,11 @@ fn suction_at(world: &World, suction: &Suction, body: Entity, about: DVec3) -> O
 /// What the tool of a hand felt in a batch of steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Felt {
-    /// The mean of the force on it (N).
+    /// The mean of the force on it (N); of what it sucks that of the last step.
     pub force: DVec3,
     /// The moment of this force about its origin, where nodes and tool are at the end (N m).
     pub torque: DVec3,
-    /// Whether it touched anything.
+    /// Whether it touched, held or sucked anything.
     pub in_contact: bool,
 }
 
@@ -227,7 +223,8 @@ pub(super) fn poses_now(world: &World) -> Vec<(usize, Pose)> {
     }
 }
 
-/// What the tools of hands felt in so many steps; another batch begins for each tool that is asked for.
+/// What the tools of hands felt in so many steps; another batch begins for each tool that is asked for. Of what they
+/// suck that is the last step alone, whose faces and pressures are still there.
 ///
 /// # Errors
 /// What the GPU says.
@@ -259,6 +256,20 @@ pub fn feel(world: &mut World, tool: &str, steps: u64) -> Result<Felt, Error> {
     super::grasps::feel(world, tool, &now, steps, &mut felt);
     if felt.in_contact {
         send_to_device(world, |_, name| name == ToolTouch::NAME || name == ToolHold::NAME)?;
+    }
+    let mut suctions = world.query::<(&Suction, &OfBody)>();
+    if !suctions.iter(world).any(|(suction, _)| suction.tool == tool) {
+        return Ok(felt);
+    }
+    let wanted = [DisplacementIncrement::NAME, SuctionMarks::NAME, SuctionPressure::NAME];
+    bring_to_host(world, |_, name| wanted.contains(&name))?;
+    for (suction, body) in suctions.iter(world).filter(|(suction, _)| suction.tool == tool) {
+        let Some(at) = now.iter().find(|(slot, _)| *slot == suction.pose).map(|(_, pose)| pose.at) else { continue };
+        if let Some((force, torque)) = suction_at(world, suction, body.0, at + suction.reference) {
+            felt.force += force;
+            felt.torque += torque;
+            felt.in_contact |= force != DVec3::ZERO;
+        }
     }
     Ok(felt)
 }

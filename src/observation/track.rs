@@ -5,7 +5,8 @@
 //! the end, whether that is asked for or not.
 
 use crate::components::Cadence;
-use glam::{DQuat, DVec3};
+use crate::math::{degrees, turned};
+use glam::DVec3;
 
 /// Rows of a table: time (s) and values.
 pub type Row = (f64, Vec<f64>);
@@ -88,21 +89,6 @@ impl Track {
         }
         between
     }
-}
-
-/// A rotation as axis times angle (degrees), of half a turn at most.
-pub(super) fn degrees(turn: DQuat) -> DVec3 {
-    shorter(turn).to_scaled_axis().map(f64::to_degrees)
-}
-
-/// A rotation by an axis times an angle (degrees).
-fn turned(degrees: DVec3) -> DQuat {
-    DQuat::from_scaled_axis(degrees.map(f64::to_radians))
-}
-
-/// The same rotation, by half a turn at most.
-pub(super) fn shorter(turn: DQuat) -> DQuat {
-    if turn.w < 0.0 { -turn } else { turn }
 }
 
 /// When all tables and frames are looked through for what is due.

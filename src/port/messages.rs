@@ -34,16 +34,16 @@ pub struct Touch {
     pub orientation: DQuat,
     /// How fast it went during the batch (m/s).
     pub velocity: DVec3,
-    /// The force on it, the mean over the batch (N).
+    /// The force on it, the mean over the batch (N); of what it sucks that of the batch's last step.
     pub force: DVec3,
     /// The moment of that force about the tool's origin (N m).
     pub torque: DVec3,
-    /// The direction of the force: out of the tissue; 0 where the tool touches nothing.
+    /// The direction of the force: out of the tissue, or into it where that is sucked; 0 where the tool feels nothing.
     pub normal: DVec3,
     /// By how much the force along the normal grows for each metre that the tool goes in (N/m), from the last batches;
     /// 0 where it touches nothing or has not moved yet.
     pub stiffness: f64,
-    /// Whether it touched anything during the batch.
+    /// Whether it touched or held anything during the batch, or sucks at something at its end.
     pub in_contact: bool,
     /// What the batch took on the clock on the wall over its simulated time: above 1 life goes slower than the hand.
     pub real_time_factor: f64,

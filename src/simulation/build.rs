@@ -8,6 +8,7 @@ use super::observer::observer;
 use super::options::{BackendChoice, Chosen, choose};
 use super::plan::{Over, Pass, Plan, each_once};
 use super::prepare::{Prepared, add_loads, counts, prepare};
+use super::rounding::warn_of_places;
 use super::schedule::Scheduled;
 use super::scheme::{fill_gpu, fit_workgroups, sum_forces, summed};
 use super::solver::Solver;
@@ -131,6 +132,9 @@ impl Simulation {
         world.insert_resource(ContactGain::default());
         if world.resource::<Clock>().relaxation.is_none() {
             crate::observation::begin_to_guard(&mut world)?;
+        }
+        if on_gpu {
+            warn_of_places(&mut world);
         }
         let mut observer = world.resource_mut::<Observer>();
         (observer.guard_settings.foreign, observer.on_gpu) = (foreign, on_gpu);

@@ -369,6 +369,10 @@ impl Simulation {
             }
             _ => self.hold(follower, &mut seen)?,
         };
+        if matches!(follower.policy, WhenUnstable::ScaleMass { .. }) {
+            // what removal sums on a device
+            send_to_device(&mut self.world, |_, name| name == AddedMass::NAME)?;
+        }
         // by the step that is taken from here on, unless it is known already
         follower.found.next = known.unwrap_or_else(|| {
             let clock = *self.world.resource::<Clock>();

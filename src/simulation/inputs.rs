@@ -8,7 +8,7 @@ use super::{InputChange, InputRecording, PoseChange, Simulation};
 use crate::components::{Change, Clock, Input, InputState, Signals};
 use crate::error::Error;
 use crate::port::DevicePose;
-use crate::scene::schema::{Constraint, Curve, Scene, WhenUnstable};
+use crate::scene::schema::{Constraint, Curve, Scene, When, WhenUnstable};
 use std::collections::BTreeMap;
 
 /// An input of a scene, at the present step.
@@ -332,6 +332,22 @@ fn uses(scene: &Scene, name: &str) -> Vec<InputUse> {
     }
     for (system, _) in scene.systems.iter().filter(|(_, system)| is(&system.curve)) {
         add(format!("systems.{system}.curve"), "node.curve", None);
+    }
+    for (i, removal) in scene.removal.iter().enumerate() {
+        let When::InTool { rate, curve, .. } = &removal.when else { continue };
+        if is(curve) {
+            let (of, unit) = if rate.is_some() { ("rate", "m³/s") } else { ("threshold", "1") };
+            add(format!("removal[{i}].when.curve"), of, Some(unit));
+        }
+    }
+    for (i, _) in scene.suction.iter().enumerate().filter(|(_, suction)| is(&suction.curve)) {
+        add(format!("suction[{i}].curve"), "pressure", Some("Pa"));
+    }
+    for (i, attachment) in scene.attachments.iter().enumerate() {
+        let Some((word, _)) = attachment.curve().filter(|(_, curve)| is(curve)) else { continue };
+        // a tool is closed while its curve is ½ or more
+        let (of, unit) = if word == "closed" { ("closed", "1") } else { ("tighten", "m") };
+        add(format!("attachments[{i}].{word}"), of, Some(unit));
     }
     uses
 }

@@ -152,17 +152,18 @@ fn bodies(world: &mut World) -> Vec<(Entity, Label)> {
     query.iter(world).map(|(entity, label)| (entity, label.clone())).collect()
 }
 
-/// Takes over how a body touches tools at rest, and if that is by springs others: the kinematic law between bodies
-/// begins anew. Where the motion
-/// may lose elements and the search for rest may not, rows have another order, and there is room for what may come to
-/// the surface.
+/// Takes over how a body touches tools at rest and what threads and ties bear, and if that is by springs how it touches
+/// others: the kinematic law between bodies begins anew, and so does what closed tools hold. Where the motion may lose
+/// elements and the search for rest may not, rows have another order, and there is room for what may come to the
+/// surface.
 fn take_touch(world: &mut World, body: Entity, other: &World, from: Entity) {
     let rows = |world: &World, entity| Some(world.get::<Authoring>(entity)?.node_rows.clone());
     let (Some(to_rows), Some(from_rows)) = (rows(world, body), rows(other, from)) else { return };
     let springs = other.resource::<Clock>().springs.is_some();
     let number = world.get::<Displacement>(body).map_or(0, |u| u.bytes().len() / u.len().max(1));
-    for column in all_columns().iter().filter(|column| is_touch(column) && (springs || column.name == ToolTouch::NAME))
-    {
+    let kinematic = [ToolTouch::NAME, SutureState::NAME, TieState::NAME];
+    let is_wanted = |column: &&ColumnAccess| is_touch(column) && (springs || kinematic.contains(&column.name));
+    for column in all_columns().iter().filter(is_wanted) {
         let (Some(source), Some(target)) = ((column.bytes)(other, from), (column.bytes)(world, body)) else { continue };
         let mut taken = target.to_vec();
         let places = match column.name {
@@ -172,6 +173,9 @@ fn take_touch(world: &mut World, body: Entity, other: &World, from: Entity) {
             }
             ToolTouch::NAME => tool_places([(world, body), (other, from)]),
             FaceTouch::NAME => face_places([(world, body), (other, from)]),
+            // tension and length, and the force; what became of them begins with the motion
+            SutureState::NAME if !springs => some_of_each(target.len() / number.max(1), SUTURE_NUMBERS, [2, 2]),
+            TieState::NAME if !springs => some_of_each(target.len() / number.max(1), TIE_NUMBERS, [2, 3]),
             // one of each after the other
             _ => vec![Same { numbers: 1, places: [0, 0], count: target.len() / number.max(1) }],
         };
@@ -190,6 +194,11 @@ struct Same {
     numbers: usize,
     places: [usize; 2],
     count: usize,
+}
+
+/// Of a column with so many numbers in all and for each thing, those from a place on, so many.
+fn some_of_each(all: usize, each: usize, [first, count]: [usize; 2]) -> Vec<Same> {
+    (0..all / each).map(|thing| Same { numbers: 1, places: [each * thing + first; 2], count }).collect()
 }
 
 /// What [`ToolTouch`] has of the same node in both worlds.

@@ -1,8 +1,11 @@
-//! Far from where a body began, displacements in f32 have too few digits left for strains.
+//! Far from where a body began, displacements in f32 have too few digits left for strains; and where parts of a scene
+//! are far from each other, places on a GPU have too few for what touches.
 
 use super::stiffness::StiffnessTracker;
 use crate::components::*;
+use crate::systems::SurfaceContacts;
 use bevy_ecs::prelude::*;
+use glam::DVec3;
 
 /// What rounding may make of strains before it is warned of.
 const MOST_NOISE: f64 = 1e-4;
@@ -30,18 +33,53 @@ fn largest_rounded(block: &StiffnessTracker, world: &World) -> Option<(Entity, f
     }
 }
 
+/// Warns of what may touch on a GPU, where it reaches so far (m) from the point that places are counted from in f32
+/// that rounding makes gaps of that share of an edge: parts of one scene that are far from each other, copies of a
+/// body too.
+pub(super) fn warn_of_places(world: &mut World) {
+    let farthest = |rest: &RestPosition, reference: DVec3| {
+        rest.0.iter().map(|at| (*at - reference).abs().max_element()).fold(0.0, f64::max)
+    };
+    let mut under_tools = world.query::<(&Label, &RestPosition, &ToolContacts)>();
+    let of_tools = |(label, rest, tools): (&Label, &RestPosition, &ToolContacts)| {
+        (label.0.clone(), "tools", farthest(rest, tools.reference), tools.edge)
+    };
+    let mut found: Vec<_> = under_tools.iter(world).map(of_tools).collect();
+    if let Some(SurfaceContacts { bodies, reference, edges, .. }) = world.get_resource::<SurfaceContacts>() {
+        found.extend(bodies.iter().zip(edges).filter_map(|(&body, edge)| {
+            let (label, rest) = (world.get::<Label>(body)?, world.get::<RestPosition>(body)?);
+            Some((label.0.clone(), "others", farthest(rest, *reference), *edge))
+        }));
+    }
+    for (part, whom, far, edge) in found {
+        let noise = far * HALF_DIGIT / edge;
+        if noise > MOST_NOISE {
+            let message = format!(
+                "{part} may touch {whom} up to {far:.3e} m from the middle from which places are counted, where f32 rounds \
+                 so coarsely that gaps are off by {noise:.1e} of an edge ({MOST_NOISE:.0e} are a warning): bring parts \
+                 nearer to each other, or use --backend cpu, which counts places in f64"
+            );
+            note(part, noise, message, world);
+        }
+    }
+}
+
 fn warn(body: Entity, largest: f64, noise: f64, world: &mut World) {
     let part = world.get::<Label>(body).map(|label| label.0.clone()).unwrap_or_default();
-    let (time, step) = (world.resource::<Clock>().time(), world.resource::<Clock>().step);
-    let mut memory = world.get_resource_or_init::<GuardMemory>();
-    if memory.warnings.iter().any(|notice| notice.criterion == "rounding" && notice.part == part) {
-        return;
-    }
     let message = format!(
         "{part} has moved by {largest:.3e} m, where f32 rounds so coarsely that it makes strains of {noise:.1e} \
          ({MOST_NOISE:.0e} are a warning): what it feels is that uncertain; use --precision f64, or a mesh that begins near where \
          it goes"
     );
-    let criterion = "rounding".to_string();
-    memory.warnings.push(Notice { criterion, part, time, step, value: noise, limit: MOST_NOISE, message });
+    note(part, noise, message, world);
+}
+
+/// Once of a body.
+fn note(part: String, noise: f64, message: String, world: &mut World) {
+    let (time, step) = (world.resource::<Clock>().time(), world.resource::<Clock>().step);
+    let mut memory = world.get_resource_or_init::<GuardMemory>();
+    if !memory.warnings.iter().any(|notice| notice.criterion == "rounding" && notice.part == part) {
+        let criterion = "rounding".to_string();
+        memory.warnings.push(Notice { criterion, part, time, step, value: noise, limit: MOST_NOISE, message });
+    }
 }

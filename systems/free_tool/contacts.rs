@@ -12,6 +12,9 @@ const SWEEPS: usize = 200;
 /// Changes of a sweep, in edges, that are none.
 const SETTLED: f64 = 1e-9;
 
+/// A node slips by no more than this in a step that sticks, in edges.
+const STILL: f64 = 1e-6;
+
 /// What [`solve`] repeats for each tool.
 pub(super) fn sweeps() -> Repeat {
     Repeat { times: SWEEPS, until: Some("nothing changes"), what: vec!["forces between a tool and each of its nodes"] }
@@ -33,6 +36,8 @@ pub(super) struct Near {
     pub edge: f64,
     /// How far it may go against the tool (m) with only its end looked at.
     pub swept: f64,
+    /// How far from the surface it was to end in the last step (m), if it touched.
+    pub target: Option<f64>,
     /// How far it comes out in this step, if it is inside (m).
     pub out: f64,
 }
@@ -57,7 +62,8 @@ struct Contact {
     outwards: DVec3,
     push: f64,
     tangential: DVec3,
-    slides: bool,
+    /// How far the node slips along the surface in this step (m).
+    slip: f64,
 }
 
 impl Contact {
@@ -116,11 +122,9 @@ pub(super) fn solve(step: &ToolStep<'_>, near: Vec<Near>) -> Solved {
             let along = normal.dot(compliance * normal);
             let push = (contact.push - (distance - contact.target) / along).max(0.0);
             (contact.outwards, contact.push) = (normal * push, push);
-            if contact.near.friction > 0.0 {
-                // with what the push has just moved
-                let gone = contact.step() - further - self_step(&contact.near, contact.force() - before, response);
-                contact.rub(gone - change.place(y), normal, &compliance);
-            }
+            // with what the push has just moved
+            let gone = contact.step() - further - self_step(&contact.near, contact.force() - before, response);
+            contact.rub(gone - change.place(y), normal, &compliance);
             let force = contact.force() - before;
             way -= force * (response.linear * dt);
             turn -= response.angular * arm.cross(force) * dt;
@@ -133,9 +137,10 @@ pub(super) fn solve(step: &ToolStep<'_>, near: Vec<Near>) -> Solved {
         }
     }
     let touches = contacts.into_iter().filter(|contact| contact.push > 0.0).map(|contact| {
-        let (force, sticks) = (contact.force(), !contact.slides);
+        let (force, sticks) = (contact.force(), contact.slip <= STILL * contact.near.edge);
+        let (slip, target) = (contact.slip, contact.target);
         let Near { node, foreseen, arm, .. } = contact.near;
-        (FreeTouch { node, force, arm, sticks }, foreseen)
+        (FreeTouch { node, force, arm, sticks, slip, target }, foreseen)
     });
     Solved { velocity: motion.velocity, momentum: motion.momentum, touches: touches.collect() }
 }
@@ -149,7 +154,7 @@ fn self_step(near: &Near, force: DVec3, response: &Response) -> DVec3 {
 impl Contact {
     fn new(near: Near, begin: &Pose) -> Self {
         let (zero, here) = (DVec3::ZERO, begin.inverse(near.place));
-        Self { near, here, plane: None, target: 0.0, outwards: zero, push: 0.0, tangential: zero, slides: true }
+        Self { near, here, plane: None, target: 0.0, outwards: zero, push: 0.0, tangential: zero, slip: 0.0 }
     }
 
     /// How far its node is outside of what it must stay outside of (m) where it ends in the tool's frame, and which way
@@ -162,19 +167,24 @@ impl Contact {
     }
 
     /// Whether it may come to touch: its node ends less than an edge from the tool. Who is inside already comes out by
-    /// and by.
+    /// and by, but for whom others keep inside: a guided tool that holds it, and pushes after this one.
     fn begins(&mut self, tool: &FreeTool, pose: &Pose) -> bool {
         let distance = self.surface(tool, pose.inverse(self.near.place + self.near.foreseen.step)).0;
         if distance < 0.0 {
             let now = tool.geometry.distance(self.here).0;
-            self.target = (now + self.near.out).min(0.0);
+            let kept = self.near.target.map_or(now, |target| now.max(target));
+            self.target = (kept + self.near.out).min(0.0);
         }
         distance <= self.near.edge
     }
 
-    /// Holds a node that slips by so much along the surface (m), as far as friction goes.
+    /// Notes that a node slips by so much along the surface (m), and holds it as far as friction goes.
     fn rub(&mut self, slip: DVec3, normal: DVec3, compliance: &DMat3) {
         let along = |vector: DVec3| vector - normal * vector.dot(normal);
+        self.slip = along(slip).length();
+        if self.near.friction <= 0.0 {
+            return;
+        }
         let (first, second) = normal.any_orthonormal_pair();
         let (a, b) = (compliance * first, compliance * second);
         let (xx, xy, yy) = (first.dot(a), first.dot(b), second.dot(b));
@@ -186,7 +196,6 @@ impl Contact {
         let wanted = along(self.tangential) - along(slip) / most;
         let bound = self.near.friction * self.push;
         let size = wanted.length();
-        self.slides = size > bound;
-        self.tangential = if self.slides { wanted * (bound / size) } else { wanted };
+        self.tangential = if size > bound { wanted * (bound / size) } else { wanted };
     }
 }

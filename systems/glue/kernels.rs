@@ -11,7 +11,7 @@ use crate::backend::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
 use crate::backend::step::with_step;
 use crate::components::*;
 use crate::shader;
-use crate::systems::surface_contact::ForeseenNodes;
+use crate::systems::surface_contact::{ForeseenNodes, note_farther};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -223,7 +223,10 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
     }
     for &(body, of, uniform) in &of_bodies {
         let push = shared.of_ties("glue_push", shader!("glue_push"), uniform, world).fragment(shader!("glue_forces"));
-        let push = push.bind(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME));
+        let (text, columns) = note_farther(body, world);
+        let push = text.into_iter().fold(push, Kernel::fragment);
+        let push = columns.iter().fold(push, |push, name| push.bind(*name, buffers.column(body, name)));
+        let push = shared.with_nodes(push).bind(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME));
         all.push(push.bind("glue_rows", rows).threads(of.node_count));
     }
     all

@@ -6,7 +6,7 @@ use crate::components::*;
 use crate::contact::{Tie, TieSet};
 use crate::math::Scalar;
 use crate::systems::grasp::Grip;
-use crate::systems::node_slices::{NodeSlices, vector};
+use crate::systems::node_slices::{NodeSlices, note_farther};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -103,7 +103,7 @@ impl Work {
             let columns = NodeSlices::<T>::of(nodes);
             let first = at;
             for row in of_body.iter().map(|&(_, row)| row as usize) {
-                self.places[at] = columns.rest[row] - glue.reference + vector(columns.u, row);
+                self.places[at] = columns.rest[row] - glue.reference + columns.displacement(row);
                 self.masses[at] = masses[row].to_f64();
                 let foreseen = columns.foresee(row, coefficients);
                 self.before[at] = foreseen.before;
@@ -149,8 +149,9 @@ impl Work {
         self.set.steps.clone_from(&self.before);
     }
 
-    /// Adds the forces to the loads of nodes that are tied.
-    pub fn push(&self, glue: &Glue, bodies: &mut Query<TiedColumns>) {
+    /// Adds the forces to the loads of nodes that are tied; where work is counted, by its factor, so that contact
+    /// knows.
+    pub fn push(&self, glue: &Glue, work_factor: Option<f64>, bodies: &mut Query<TiedColumns>) {
         let mut at = 0;
         for of_body in self.nodes.chunk_by(|one, other| one.0 == other.0) {
             let Ok(mut columns) = bodies.get_mut(glue.bodies[of_body[0].0]) else { continue };
@@ -158,6 +159,14 @@ impl Work {
                 if self.set.is_tied(at) {
                     let load = columns.nodes.external.vector(row as usize) + self.forces[at];
                     columns.nodes.external.set_vector(row as usize, load);
+                    if let Some(work_factor) = work_factor {
+                        note_farther(
+                            &mut columns.met,
+                            row as usize,
+                            self.set.responses[at] * self.forces[at],
+                            work_factor,
+                        );
+                    }
                 }
                 at += 1;
             }

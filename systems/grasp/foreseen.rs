@@ -1,10 +1,9 @@
 //! Who is held in an explicit step, for whoever asks before `grasp` runs: contact between bodies, and glue.
 
-use super::HELD;
 use crate::backend::cpu::{Foreseen, IntegrationCoefficients};
 use crate::components::*;
 use crate::math::{Scalar, vector_at};
-use crate::systems::node_slices::{NodeSlices, vector};
+use crate::systems::node_slices::NodeSlices;
 use glam::DVec3;
 
 /// Nodes of a body that tools may hold, in the run's precision. `shaders/surface_contact_hold.wgsl` is its twin.
@@ -31,7 +30,7 @@ impl<'a, T: Scalar> Grip<'a, T> {
         for (node, &row) in self.grasps.rows.iter().enumerate() {
             let Some(place) = place_of(row) else { continue };
             let row = row as usize;
-            let at = nodes.rest[row] - self.grasps.reference + vector(nodes.u, row);
+            let at = nodes.rest[row] - self.grasps.reference + nodes.displacement(row);
             if let Some(step) = self.step_of(signals.values(), node, at, &nodes.foresee(row, coefficients)) {
                 held(place, step);
             }
@@ -45,7 +44,8 @@ impl<'a, T: Scalar> Grip<'a, T> {
         let (count, mask) = (self.grasps.numbers_a_grasp(), self.grasps.masks[node]);
         let held = |number: usize| {
             let (grasp, at) = (&self.grasps.grasps[number], self.grasps.numbers() * node + count * number);
-            if mask >> number & 1 == 0 || self.numbers[at + 3].to_f64() != HELD || signals[grasp.closed][1] <= 0.0 {
+            let holds = mask >> number & 1 == 1 && self.numbers[at + 3].to_f64() == ToolHold::HELD;
+            if !holds || signals[grasp.closed][1] <= 0.0 {
                 return None;
             }
             let pose = Pose::of_slots(&signals[grasp.tool.signal..]);

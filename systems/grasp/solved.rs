@@ -1,6 +1,5 @@
 //! Grasps in implicit steps: motion that is told, of nodes that closed tools hold.
 
-use super::{HELD, WITHOUT};
 use crate::components::*;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -64,20 +63,20 @@ pub(crate) fn held_in_step(world: &mut World) -> Vec<HeldNode> {
 
 /// Whether a tool holds a node that is there in its frame (m) at the beginning of the step.
 fn follows(grasp: &Grasp, hold: &mut ToolHold, at: usize, closed: bool, of_tool: DVec3) -> bool {
-    let is_open = hold.get(at + 3) == 0.0;
+    let holds = hold.get(at + 3);
     if !closed {
-        if !is_open {
+        if !ToolHold::is_open(holds) {
             hold.set_vector_at(at, DVec3::ZERO);
-            hold.set(at + 3, 0.0);
+            hold.set(at + 3, ToolHold::opened(holds));
         }
         return false;
     }
-    if is_open {
+    if ToolHold::is_open(holds) {
         let within = |reach: f64| grasp.tool.geometry.distance(of_tool).0 <= reach;
-        hold.set(at + 3, if grasp.reach.is_none_or(within) { HELD } else { WITHOUT });
+        hold.set(at + 3, if grasp.reach.is_none_or(within) { ToolHold::HELD } else { ToolHold::WITHOUT });
         hold.set_vector_at(at + 6, of_tool);
     }
-    hold.get(at + 3) == HELD
+    hold.get(at + 3) == ToolHold::HELD
 }
 
 /// Notes with which force (N) a tool holds a node at the end of the step. Whom it takes more to hold than it can slips
@@ -95,6 +94,6 @@ pub(crate) fn note_held(world: &mut World, node: &HeldNode, force: DVec3) {
     }
     if force.length() > node.strength {
         hold.set_vector_at(at, DVec3::ZERO);
-        hold.set(at + 3, WITHOUT);
+        hold.set(at + 3, ToolHold::SLIPPED);
     }
 }

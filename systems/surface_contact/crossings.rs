@@ -45,7 +45,7 @@ impl SurfaceContacts {
     }
 }
 
-/// Finds all pairs of edges within a radius (m).
+/// Finds all pairs of edges within a radius (m), and of such as go deeper as much beyond.
 pub(super) fn list(contacts: &mut SurfaceContacts, radius: f64) {
     let mut crossings = std::mem::take(&mut contacts.surface.crossings);
     crossings.near.clear();
@@ -61,7 +61,9 @@ pub(super) fn list(contacts: &mut SurfaceContacts, radius: f64) {
         for (body, tree) in (0..).zip(&surface.trees).skip(edge.body as usize) {
             let Some(meeting) = contacts.crossing(edge.body, body) else { continue };
             let itself = body == edge.body;
-            let near_at_rest = NEAR_AT_REST * (meeting.thickness + MARGIN * contacts.edge);
+            let near_at_rest = NEAR_AT_REST * (meeting.thickness + MARGIN * meeting.edge);
+            let [one, other] = [edge.body, body].map(|body| surface.beyond[body as usize]);
+            let radius = radius + f64::min(one, other);
             tree.near(middle, radius + half, |triangle| {
                 for other in sides[triangle as usize] {
                     let Some(met) = edges.get(other as usize).filter(|_| !itself || other > number) else { continue };
@@ -92,7 +94,8 @@ pub(super) fn find(contacts: &mut SurfaceContacts, reach: f64) {
     found.clear();
     for &pair in &*near {
         let [one, other] = pair.map(|edge| &edges[edge as usize]);
-        let reach = reach + contacts.crossing(one.body, other.body).map_or(0.0, |meeting| meeting.thickness);
+        let Some(meeting) = contacts.crossing(one.body, other.body) else { continue };
+        let reach = contacts.reach_of(&meeting, reach);
         found.extend(surface.triangles.crossing(now, one, other, reach).map(|crossing| (pair, crossing)));
     }
     contacts.surface.crossings = crossings;

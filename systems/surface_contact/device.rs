@@ -42,8 +42,6 @@ pub(super) struct SurfaceContact {
     list: u32,
     inverse: u32,
     pub displacements: u32,
-    edge: f32,
-    settling: f32,
     margin: f32,
     rounding: f32,
     thickness: f32,
@@ -70,8 +68,6 @@ uniform!(SurfaceContact {
     list,
     inverse,
     displacements,
-    edge,
-    settling,
     margin,
     rounding,
     thickness,
@@ -154,13 +150,11 @@ impl SurfaceContacts {
             list: layout.list as u32,
             inverse: layout.inverse as u32,
             displacements: layout.displacements as u32,
-            edge: self.edge as f32,
-            settling: self.settling as f32,
-            margin: (survey::MARGIN * self.edge) as f32,
+            margin: (survey::MARGIN * self.coarsest) as f32,
             // some roundings of a place
             rounding: (8.0 * f64::from(f32::EPSILON) * size.fold(0.0, f64::max)) as f32,
             thickness: self.thickness() as f32,
-            depth: surface.triangles.deepest() as f32,
+            depth: surface.shallowest as f32,
             relaxed: u32::from(clock.relaxation.is_some()),
         }
     }
@@ -170,7 +164,7 @@ impl SurfaceContacts {
     fn steps_ahead(&self, nearer: f64, largest: f64) -> f64 {
         // half as fast again by the end of it
         let a_step = 3.0 * largest;
-        let left = self.surface.lists.radius - self.farthest(motion::reach(self, 1.5 * largest)) - nearer;
+        let left = self.surface.lists.radius - self.least_farthest(motion::reach(self, 1.5 * largest)) - nearer;
         if left <= 0.0 {
             return 0.0;
         }

@@ -84,7 +84,7 @@ pub(super) fn face<M: Send>(
     kept.resize_with(kept.len().max(awake.len().div_ceil(POINTS_A_TASK)), Kept::default);
     reaches.clear();
     let meetings = contacts.meetings.iter();
-    reaches.extend(meetings.map(|meeting| reach + meeting.map_or(0.0, |meeting| meeting.thickness)));
+    reaches.extend(meetings.map(|meeting| meeting.map_or(reach, |meeting| contacts.reach_of(&meeting, reach))));
     let stays = Stays { moved: lately, reach: contacts.surface.stays.reach - reach };
     let farthest = contacts.farthest(reach);
     let surface = &contacts.surface;
@@ -114,14 +114,17 @@ impl Looking<'_> {
     fn face<M>(&self, of: Awake<'_, M>, tell: &impl Fn(&SurfaceContacts, u32, &Faced, &mut M)) {
         let Awake { places, first, shortlists, wake, kept, mut made } = of;
         let Looking { contacts, now, .. } = *self;
-        let (surface, edge, mut own) = (&contacts.surface, contacts.edge, Own::default());
+        let (surface, count, mut own) = (&contacts.surface, contacts.bodies.len(), Own::default());
         let mut faced = Faced::NOTHING;
         for &place in places {
             let place = place as usize;
             let number = surface.lists.points[place];
             let (point, short) = (&surface.points[number as usize], &mut shortlists[place - first]);
-            let of_point = &self.reaches[point.body as usize * contacts.bodies.len()..];
-            let reach = |triangle: u32| of_point[surface.triangles.bodies[triangle as usize] as usize];
+            let others = point.body as usize * count..(point.body as usize + 1) * count;
+            let (reaches, meetings) = (&self.reaches[others.clone()], &contacts.meetings[others]);
+            let body = |triangle: u32| surface.triangles.bodies[triangle as usize] as usize;
+            let reach = |triangle: u32| reaches[body(triangle)];
+            let edge = |triangle: u32| meetings[body(triangle)].as_ref().map_or(contacts.edge, |meeting| meeting.edge);
             let at_a_glance = (self.nearer, reach, edge);
             let seen = (&mut faced, &mut own);
             if !surface.triangles.faced_at_a_glance((now, point, short), at_a_glance, seen) {

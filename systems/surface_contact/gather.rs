@@ -6,15 +6,16 @@ use super::meet::{FACES, FREE, STICKS};
 use super::{Meeting, Surface, SurfaceContacts, crossings};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
-use crate::contact::{Beginning, Contact, ContactSet, Faced, Parts};
+use crate::contact::{Beginning, Contact, ContactSet, Faced, Facing, Parts, Point};
 use crate::math::Scalar;
 use glam::{DVec3, DVec4};
 
-/// How far a point that is inside comes out in a step at most, in edges.
+/// How far a point that is inside comes out in a step at most, in the smaller edges of both bodies: elements of neither
+/// are to turn over.
 pub(super) const OUT: f64 = 0.1;
 
-/// Points of faces share their nodes' masses while they are no farther from touching than this, in edges: who shares
-/// stays the same from step to step then, and pressures come to rest.
+/// Points of faces share their nodes' masses while they are no farther from touching than this, in the smaller edges of
+/// both bodies: who shares stays the same from step to step then, and pressures come to rest.
 const SHARES: f64 = 1e-3;
 
 /// Nodes that a task foresees.
@@ -111,18 +112,9 @@ struct Nodes<'a> {
 }
 
 impl Nodes<'_> {
-    /// Adds a contact of these nodes with weights, along a normal with a gap (m) and with friction and slip, if it ends
-    /// nearer than `within` (m): as far outside (m) as that; with a spring, which asks for nothing else, as far as it
-    /// is.
+    /// Nodes with weights against others.
     #[inline]
-    fn add(
-        &self,
-        batch: &mut Vec<Contact>,
-        [of_point, of_face]: [(&[u32], &[f64]); 2],
-        ((normal, gap), resists): ((DVec3, f64), (f64, DVec3)),
-        (spring, outside, within): (Option<ContactSpring>, f64, f64),
-        of: Met,
-    ) {
+    fn between(&self, [of_point, of_face]: [(&[u32], &[f64]); 2]) -> Parts {
         let mut parts = Parts::default();
         for (&node, &weight) in of_point.0.iter().zip(of_point.1) {
             parts.add(self.slots[node as usize], weight);
@@ -130,6 +122,28 @@ impl Nodes<'_> {
         for (&node, &weight) in of_face.0.iter().zip(of_face.1) {
             parts.add(self.slots[node as usize], -weight);
         }
+        parts
+    }
+
+    /// Those of a point against what it faces.
+    #[inline]
+    fn parts(&self, surface: &Surface, point: &Point, facing: &Facing) -> Parts {
+        let (corners, weights) = surface.corners_of(point, facing);
+        self.between([point.slices(), (&corners[..], &weights[..])])
+    }
+
+    /// Adds a contact of nodes with weights, along a normal with a gap (m) and with friction and slip, if it ends
+    /// nearer than `within` (m): as far outside (m) as that; with a spring, which asks for nothing else, as far as it
+    /// is.
+    #[inline]
+    fn add(
+        &self,
+        batch: &mut Vec<Contact>,
+        parts: Parts,
+        ((normal, gap), resists): ((DVec3, f64), (f64, DVec3)),
+        (spring, outside, within): (Option<ContactSpring>, f64, f64),
+        of: Met,
+    ) {
         let step = parts.step(self.steps);
         let (gap, ends) = match spring {
             None => (gap, gap + normal.dot(step)),
@@ -146,13 +160,14 @@ impl Nodes<'_> {
 
 /// How deep a point may be inside (m) that is so far outside (m) of what it faces: as deep as it is found there and no
 /// motion has brought it, by and by less. A point that was not seen before (at the start, laid bare, at a corner that
-/// comes round) is not thrown out in a step.
-pub(super) fn allowed<T: Scalar>(touch: &[T], gap: f64, in_step: &InStep) -> f64 {
+/// comes round) is not thrown out in a step. One that touches went outwards (m) as far as it did in the last step, and
+/// not as far as was foreseen: tools may have held what it touches.
+pub(super) fn allowed<T: Scalar>(touch: &[T], gap: f64, went: f64, in_step: &InStep) -> f64 {
     let expected = match touch[4].to_f64() {
         FREE => 0.0,
         // as deep as any motion may have brought it
         FACES => touch[5].to_f64() - 2.0 * in_step.largest,
-        _ => touch[5].to_f64(),
+        _ => touch[5].to_f64() + went,
     };
     (touch[3].to_f64() + (gap - expected).min(0.0) + in_step.settling).min(0.0).max(gap.min(0.0))
 }
@@ -162,7 +177,7 @@ pub(super) fn allowed<T: Scalar>(touch: &[T], gap: f64, in_step: &InStep) -> f64
 pub(super) fn gather<T: Scalar>(
     contacts: &mut SurfaceContacts,
     gathered: &mut Gathered,
-    (in_step, reach, cpu): (&InStep, f64, &Cpu),
+    (clock, reach, cpu): (&Clock, f64, &Cpu),
     bodies: &mut [BodySlices<'_, T>],
 ) {
     let Gathered { set: ContactSet { batches, steps, earlier, .. }, slots, seen, facing, .. } = gathered;
@@ -172,11 +187,13 @@ pub(super) fn gather<T: Scalar>(
         let Some(first) = &faced.first else { return };
         let kept = contacts.kept(point);
         let touch = of_bodies[kept.body].kept(kept);
-        let outside = contacts.gap(&contacts.surface.points[point as usize], first);
+        let of = &contacts.surface.points[point as usize];
+        let (outside, parts) = (contacts.gap(of, first), nodes.parts(&contacts.surface, of, first));
+        let went = first.normal.dot(parts.step(nodes.earlier));
         // as it is kept
-        let allowed = T::from_f64(allowed(touch, outside, in_step)).to_f64();
+        let allowed = T::from_f64(allowed(touch, outside, went, &contacts.in_step(of, first, clock))).to_f64();
         seen.push(Seen { point, outside, allowed });
-        nodes.meet(contacts, (faced, touch), &seen[seen.len() - 1], in_step, batch);
+        nodes.meet(contacts, (faced, touch, parts), &seen[seen.len() - 1], clock, batch);
     });
     for &Seen { point, outside, allowed } in seen.iter().flatten() {
         let kept = contacts.kept(point);
@@ -189,18 +206,17 @@ pub(super) fn gather<T: Scalar>(
     let (surface, Some(last)) = (&contacts.surface, batches.last_mut()) else { return };
     for (pair, crossing) in &surface.crossings.found {
         let [one, other] = pair.map(|edge| surface.crossings.edges[edge as usize]);
-        let Some(Meeting { friction, thickness, spring, .. }) = contacts.crossing(one.body, other.body) else {
-            continue;
-        };
+        let Some(meeting) = contacts.crossing(one.body, other.body) else { continue };
+        let Meeting { friction, thickness, spring, .. } = meeting;
         let outside = crossing.gap - thickness;
         // nothing is known of how it got there, nor of how it slipped
-        let gap = outside.max(-in_step.settling);
+        let gap = outside.max(-meeting.settling(clock));
         let [of_one, of_other] = &crossing.weights;
         // nodes are the first of the points
         let met = Met { point: one.nodes[0], is_first: false, outside };
         nodes.add(
             last,
-            [(&one.nodes, of_one), (&other.nodes, of_other)],
+            nodes.between([(&one.nodes, of_one), (&other.nodes, of_other)]),
             ((crossing.normal, gap), (friction[1], DVec3::ZERO)),
             (spring, outside, 0.0),
             met,
@@ -209,13 +225,13 @@ pub(super) fn gather<T: Scalar>(
 }
 
 impl Nodes<'_> {
-    /// The contacts of a point, with what is kept of it.
+    /// The contacts of a point, with what is kept of it, and with its nodes against those of its first face.
     fn meet<T: Scalar>(
         &self,
         contacts: &SurfaceContacts,
-        (faced, touch): (&Faced, &[T]),
+        (faced, touch, of_first): (&Faced, &[T], Parts),
         &Seen { point: number, outside, allowed }: &Seen,
-        in_step: &InStep,
+        clock: &Clock,
         batch: &mut Vec<Contact>,
     ) {
         let surface = &contacts.surface;
@@ -224,7 +240,8 @@ impl Nodes<'_> {
         let both = [(&faced.first, true), (&faced.second, false)];
         for (facing, is_first) in both.into_iter().filter_map(|(facing, is_first)| Some((facing.as_ref()?, is_first))) {
             let body = surface.triangles.bodies[facing.triangle as usize];
-            let Some(Meeting { friction, spring, .. }) = contacts.meeting(point.body, body) else { continue };
+            let Some(meeting) = contacts.meeting(point.body, body) else { continue };
+            let Meeting { friction, spring, edge, .. } = meeting;
             let friction = if stuck { friction[0] } else { friction[1] };
             // of another face nothing is known of how it got there
             let (outside, allowed, slip) = match is_first {
@@ -232,14 +249,14 @@ impl Nodes<'_> {
                 false => (contacts.gap(point, facing), 0.0, DVec3::ZERO),
             };
             let gap = match is_first {
-                true => (outside - allowed).max(-OUT * contacts.edge),
-                false => outside.max(-in_step.settling),
+                true => (outside - allowed).max(-OUT * edge),
+                false => outside.max(-meeting.settling(clock)),
             };
-            let (corners, weights) = surface.corners_of(point, facing);
-            let within = if point.triangle.is_some() { SHARES * contacts.edge } else { 0.0 };
+            let parts = if is_first { of_first } else { self.parts(surface, point, facing) };
+            let within = if point.triangle.is_some() { SHARES * edge } else { 0.0 };
             self.add(
                 batch,
-                [point.slices(), (&corners[..], &weights[..])],
+                parts,
                 ((facing.normal, gap), (friction, slip)),
                 (spring, outside - allowed, within),
                 Met { point: number, is_first, outside },

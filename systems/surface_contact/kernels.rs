@@ -29,7 +29,7 @@ struct SurfaceBody {
 uniform!(SurfaceBody { first, count, displacements });
 
 /// Words of a contact beside its nodes and weights, as in `shaders/surface_contacts.wgsl`.
-const CONTACT_WORDS: usize = 20;
+const CONTACT_WORDS: usize = 19;
 
 /// Buffers that kernels share.
 struct Shared {
@@ -273,6 +273,17 @@ fn before(
         .bind(DisplacementIncrement::NAME, buffers.column(body, DisplacementIncrement::NAME));
     let nodes = ForeseenNodes { rows: shared.rows, nodes: shared.nodes, of_body, count: of.count };
     ([place, nodes.foresee("surface_contact_foresee", body, world, buffers)], nodes)
+}
+
+/// What gives a kernel `note_farther`, for systems that act on nodes of a body after contact: its text, and the columns
+/// that it asks for.
+pub(in crate::systems) fn note_farther(body: Entity, world: &World) -> (Vec<Fragment>, &'static [&'static str]) {
+    if world.get::<ContactForce>(body).is_none() {
+        let text = "fn note_farther(node: u32, farther: vec3<f32>) {}\n";
+        return (vec![Fragment::new("generated: the surface meets nothing", text)], &[]);
+    }
+    let numbers = Fragment::new("generated: numbers of a node", format!("const MET: u32 = {MEETING_NUMBERS}u;\n"));
+    (vec![numbers, shader!("contact_farther")], &[ContactForce::NAME, SurfaceTouch::NAME])
 }
 
 /// Nodes of a body whose next steps are wanted.

@@ -3,7 +3,7 @@
 use super::body_slices::{BodySlices, Kept, set_vector, vector};
 use super::faced::tasks;
 use super::gather::{Gathered, InStep, gather};
-use super::{Surface, SurfaceContacts};
+use super::{Meeting, Surface, SurfaceContacts};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
 use crate::contact::{Facing, Point, bilinear};
@@ -23,6 +23,20 @@ impl SurfaceContacts {
         facing.gap - self.meeting(point.body, body).map_or(0.0, |meeting| meeting.thickness)
     }
 
+    /// What `allowed` asks of a point and what it faces.
+    pub(super) fn in_step(&self, point: &Point, facing: &Facing, clock: &Clock) -> InStep {
+        let body = self.surface.triangles.bodies[facing.triangle as usize];
+        let settling = self.meeting(point.body, body).map_or(0.0, |meeting| meeting.settling(clock));
+        InStep { largest: self.surface.motion.largest, settling }
+    }
+
+    /// Where a point's numbers are.
+    pub(super) fn kept(&self, point: u32) -> Kept {
+        self.surface.kept(point)
+    }
+}
+
+impl Meeting {
     /// How far points that are inside and may be come out in this step (m): what they began with while a wave goes
     /// through the body, what the corners of faces have let in later a hundred times as slowly, since that does work.
     pub(super) fn settling(&self, clock: &Clock) -> f64 {
@@ -31,11 +45,6 @@ impl SurfaceContacts {
             None if clock.time() * self.settling < 0.5 * self.edge => self.settling * clock.time_step,
             None => 0.01 * self.settling * clock.time_step,
         }
-    }
-
-    /// Where a point's numbers are.
-    pub(super) fn kept(&self, point: u32) -> Kept {
-        self.surface.kept(point)
     }
 }
 
@@ -114,8 +123,7 @@ pub(super) fn meet<T: Scalar>(
     gathered.begin(tasks(contacts) + 1);
     gathered.foresee(&contacts.surface, &coefficients, bodies, cpu);
     gathered.hold(&contacts.surface, (&coefficients, signals), bodies);
-    let in_step = InStep { largest: contacts.surface.motion.largest, settling: contacts.settling(clock) };
-    gather(contacts, &mut gathered, (&in_step, reach, cpu), bodies);
+    gather(contacts, &mut gathered, (clock, reach, cpu), bodies);
     forget(contacts, &gathered.facing, bodies);
     let is_known = clock.relaxation.is_none() && contacts.sweeps <= 1;
     let gain = gain.filter(|_| is_known && !gathered.set.contacts().any(|contact| contact.springs));
@@ -150,7 +158,6 @@ fn note_touches<T: Scalar>(
         if contact.is_first {
             set_vector(touch, 0, contact.slip);
             touch[4] = T::from_f64(if contact.slides { SLIDES } else { STICKS });
-            touch[5] = T::from_f64(after);
         }
         if let Some(work_factor) = work_factor {
             touch[6] = T::from_f64(touch[6].to_f64() + contact.slid);

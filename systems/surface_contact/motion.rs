@@ -1,8 +1,9 @@
 //! What may be left as it is while surfaces have moved so far: all of it, or lists that hold all that is near.
 
-use super::body_slices::{BodySlices, vector};
+use super::body_slices::BodySlices;
 use super::survey::MARGIN;
-use super::{MeetingColumns, MeetingColumnsReadOnlyItem, Surface, SurfaceContacts, crossings, faced, slices_of};
+use super::{Meeting, MeetingColumns, MeetingColumnsReadOnlyItem, Surface, SurfaceContacts};
+use super::{crossings, faced, slices_of};
 use crate::backend::cpu::Cpu;
 use crate::components::Clock;
 use crate::contact::{Finder, Lists, Point, Shortlist};
@@ -21,15 +22,37 @@ const NUMBERS_A_TASK: usize = 1024;
 const STAYS: [f64; 2] = [2e-3, 3e-2];
 const STEPS_OF_SHORTLISTS: f64 = 40.0;
 
-/// How far faces must be looked at when the fastest node goes so far in a step (m).
+/// How far faces must be looked at when the fastest node goes so far in a step (m): of the pair with the largest edge,
+/// so that lists and who sleeps hold for all.
 pub(super) fn reach(contacts: &SurfaceContacts, largest: f64) -> f64 {
-    4.0 * largest + MARGIN * contacts.edge
+    4.0 * largest + MARGIN * contacts.coarsest
 }
 
 impl SurfaceContacts {
+    /// How far faces of two bodies that meet are looked at (m), of the `reach` of all (m).
+    pub(super) fn reach_of(&self, meeting: &Meeting, reach: f64) -> f64 {
+        reach - MARGIN * (self.coarsest - meeting.edge) + meeting.thickness
+    }
+
+    /// The largest thickness (m).
+    pub(super) fn thickness(&self) -> f64 {
+        self.meetings.iter().flatten().map(|meeting| meeting.thickness).fold(0.0, f64::max)
+    }
+
+    /// How far faces may be that are in a point's way (m): within reach outside, and as deep as any inside goes.
+    pub(super) fn farthest(&self, reach: f64) -> f64 {
+        f64::max(self.thickness() + reach, self.surface.triangles.deepest())
+    }
+
+    /// The same of the body whose inside is the shallowest: of others so much more is in lists as theirs is deeper, so
+    /// that what is coarse makes no lists long of what is fine.
+    pub(super) fn least_farthest(&self, reach: f64) -> f64 {
+        f64::max(self.thickness() + reach, self.surface.shallowest)
+    }
+
     /// Whether the lists hold all that is within `reach` (m) and thickness. What is no number is no bound.
     pub(super) fn lists_hold(&self, reach: f64) -> bool {
-        self.farthest(reach) + self.surface.motion.lists.moved <= self.surface.lists.radius
+        self.least_farthest(reach) + self.surface.motion.lists.moved <= self.surface.lists.radius
     }
 
     /// Whether shortlists hold where faces are looked at so far (m).
@@ -119,7 +142,7 @@ fn follow<T: Scalar>(
 fn place<T: Scalar>(contacts: &SurfaceContacts, bodies: &[BodySlices<'_, T>], node: usize) -> DVec3 {
     let (body, row) = contacts.surface.nodes[node];
     let (of_body, row) = (&bodies[body as usize], row as usize);
-    of_body.rest[row] - contacts.reference + vector(of_body.u, row)
+    of_body.rest[row] - contacts.reference + of_body.displacement(row)
 }
 
 /// Some ascending numbers a task, with the values of these and of those between, and the number of the first value.
@@ -135,18 +158,20 @@ fn tasks<'a, T>(numbers: &'a [u32], mut left: &'a mut [T]) -> impl Iterator<Item
 
 /// Makes the lists anew, of all that is within `reach` (m) and thickness, and a skin.
 pub(super) fn list<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], reach: f64, cpu: &Cpu) {
-    let farthest = contacts.farthest(reach);
+    let farthest = contacts.least_farthest(reach);
     let started = Instant::now();
     let mut places = std::mem::take(&mut contacts.surface.places);
     places.iter_mut().enumerate().for_each(|(node, at)| *at = place(contacts, bodies, node));
     contacts.surface.places = places;
     let mut trees = std::mem::take(&mut contacts.surface.trees);
     let meets = |point: u32, face: u32, of_face: bool| contacts.meets(point, face, of_face);
-    let Surface { triangles, points, places, apart, .. } = &contacts.surface;
+    let Surface { triangles, points, places, apart, beyond, .. } = &contacts.surface;
     trees.iter_mut().for_each(|tree| tree.refit(|number| triangles.corners(places, number)));
-    let finder = Finder { surfaces: triangles, points, meets: &meets, apart };
-    // reach is four steps of the fastest and a little: of what is fast lists serve some steps, too
-    let skin = contacts.skin * (contacts.edge + 40.0 * reach).min(4.0 * contacts.edge);
+    let finder = Finder { surfaces: triangles, points, meets: &meets, apart, beyond };
+    // reach is four steps of the fastest and a little: of what is fast lists serve some steps, too; by the smallest
+    // edge, since by another lists of what is fine would be long
+    let of_smallest = reach - MARGIN * (contacts.coarsest - contacts.edge);
+    let skin = contacts.skin * (contacts.edge + 40.0 * of_smallest).min(4.0 * contacts.edge);
     let lists = Lists::find(&finder, &trees, places, farthest + skin, cpu);
     let listed = lists.points.iter().map(|&point| points[point as usize]);
     let listed: Vec<Point> = listed.collect();

@@ -1,7 +1,7 @@
 //! Bodies in implicit steps: springs, whose forces are those at the end of the step that is solved for.
 
-use super::body_slices::{BodySlices, set_vector, vector_at};
-use super::gather::{Gathered, InStep, allowed};
+use super::body_slices::{BodySlices, Kept, set_vector, vector_at};
+use super::gather::{Gathered, allowed};
 use super::meet::{FACES, SLIDES, STICKS, forget, push, release};
 use super::{Meeting, SurfaceContacts, crossings, faced};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
@@ -39,15 +39,8 @@ impl Pair {
     }
 }
 
-/// What is known of a contact besides.
-#[derive(Clone, Debug)]
-pub(super) struct Solved {
-    /// Its normal and tangential force (N) at the end of the last step.
-    was: f64,
-    rubbed: DVec3,
-    /// [`TouchingSpring::slopes`].
-    slopes: [DMat3; 2],
-}
+/// [`TouchingSpring::slopes`] of a contact.
+pub(super) type Slopes = [DMat3; 2];
 
 impl SurfaceContacts {
     /// The largest share of a spring between a body and what it meets, if there is one.
@@ -78,9 +71,9 @@ pub(crate) fn find(world: &World, first_axis: impl Fn(Entity) -> Option<usize>, 
         let (body, row) = contacts.surface.nodes[contacts.surface.near.nodes[slot] as usize];
         Some(first_axis(contacts.bodies[body as usize])? + 3 * row as usize)
     };
-    for (contact, solved) in gathered.set.contacts().zip(solved) {
+    for (contact, &slopes) in gathered.set.contacts().zip(solved) {
         let parts = contact.parts.iter().filter_map(|(slot, weight)| Some((axis_of(slot)?, weight)));
-        found.push(TouchingSpring { parts: parts.collect(), force: contact.force(), slopes: solved.slopes });
+        found.push(TouchingSpring { parts: parts.collect(), force: contact.force(), slopes });
     }
 }
 
@@ -96,7 +89,6 @@ pub(super) fn pair<T: Scalar>(
     found.iter_mut().for_each(Vec::clear);
     faced::face(contacts, reach, cpu, found.iter_mut(), |_, point, faced, found| found.push((point, *faced)));
     crossings::find(contacts, reach);
-    let in_step = InStep { largest: contacts.surface.motion.largest, settling: contacts.settling(clock) };
     let mut pairs = std::mem::take(&mut contacts.surface.pairs);
     let surface = &contacts.surface;
     let mut add = |pair: Pair, gap: f64| {
@@ -109,12 +101,13 @@ pub(super) fn pair<T: Scalar>(
             let Some(facing) = facing else { continue };
             let body = surface.triangles.bodies[facing.triangle as usize];
             let Some(meeting) = contacts.meeting(point.body, body) else { continue };
+            let in_step = contacts.in_step(point, facing, clock);
             let (corners, weights) = surface.corners_of(point, facing);
             let of_face = corners.into_iter().zip(weights).map(|(node, weight)| (node, -weight));
             let nodes = point.parts().chain(of_face).collect();
             let (gap, kept) = (contacts.gap(point, facing), contacts.kept(number));
             let allowed = match (first, &clock.springs) {
-                (true, _) => allowed(bodies[kept.body].kept(kept), gap, &in_step),
+                (true, _) => allowed(bodies[kept.body].kept(kept), gap, 0.0, &in_step),
                 // at rest all presses, however it got there
                 (false, _) if in_step.settling == f64::INFINITY => 0.0,
                 (false, Some(springs)) => borne(contacts, (point, facing.normal, gap), (&meeting, springs), bodies),
@@ -196,7 +189,7 @@ pub(super) fn press<T: Scalar>(
         gathered.set.find_forces(cpu);
         release(&mut contacts.surface, bodies);
         forget(contacts, &gathered.facing, bodies);
-        note(contacts, (&gathered, clock.relaxation.is_none()), &pairs, &solved, bodies);
+        note(contacts, &gathered, &pairs, bodies);
         push(contacts, &gathered.set.forces, bodies);
     }
     (contacts.surface.gathered, contacts.surface.pairs, contacts.surface.solved) = (gathered, pairs, solved);
@@ -210,13 +203,13 @@ fn add<T: Scalar>(
     (pair, gap): (&Pair, f64),
     (springs, time): (&SolvedSprings, f64),
     bodies: &mut [BodySlices<'_, T>],
-    all: &mut Vec<Solved>,
+    all: &mut Vec<Slopes>,
 ) {
     let &Pair { meeting, point, first, normal, .. } = pair;
     let Some(spring) = meeting.spring else { return };
     let kept = contacts.kept(point);
     let touch = bodies[kept.body].kept(kept);
-    let (state, before) = (touch[4].to_f64(), touch[5].to_f64() - touch[3].to_f64());
+    let state = touch[4].to_f64();
     let (touched, sticks) = (first && state >= STICKS, first && state == STICKS);
     let slip = if touched { vector_at(touch, 0) } else { DVec3::ZERO };
     let friction = meeting.friction[usize::from(!sticks)];
@@ -232,23 +225,19 @@ fn add<T: Scalar>(
     let mut contact = Contact::new(parts, (normal, gap, relative), (friction, slip));
     let press = spring.press(springs, mass, gap, [normal.dot(relative), time]);
     let rubbing = press.rub(normal, contact.along(slip + relative), friction);
-    let slopes = press.with(normal, &rubbing).1;
+    all.push(press.with(normal, &rubbing).1);
     (contact.pressing, contact.rubbing, contact.slides) = (press.pressing, rubbing.force, rubbing.slides);
-    let was = if touched { (-press.stiffness * before).max(0.0) } else { 0.0 };
-    all.push(Solved { was, rubbed: -press.stiffness * contact.along(slip), slopes });
     // what slides keeps as much elastic slip as its force is of
     contact.slip = if press.stiffness > 0.0 { -contact.rubbing / press.stiffness } else { DVec3::ZERO };
     (contact.point, contact.is_first, contact.outside) = (point, first, gap + pair.allowed);
     gathered.set.add(contact);
 }
 
-/// Notes what points do at the end of a step. Forces work with the mean of those at both ends, as all in implicit
-/// steps; on the way to rest work is not counted.
+/// Notes what points do at the end of a step.
 fn note<T: Scalar>(
     contacts: &mut SurfaceContacts,
-    (gathered, counts_work): (&Gathered, bool),
+    gathered: &Gathered,
     pairs: &[Pair],
-    all: &[Solved],
     bodies: &mut [BodySlices<'_, T>],
 ) {
     for pair in pairs.iter().filter(|pair| pair.first) {
@@ -260,21 +249,86 @@ fn note<T: Scalar>(
         touch[3..6].iter_mut().zip(numbers).for_each(|(touch, number)| *touch = T::from_f64(number));
     }
     contacts.surface.figures.contacts += gathered.set.count() as u64;
-    for (contact, Solved { was, rubbed, .. }) in gathered.set.contacts().zip(all) {
-        let kept = contacts.kept(contact.point);
-        let touch = bodies[kept.body].kept_mut(kept);
-        let relative = contact.parts.step(&gathered.set.earlier);
+    for contact in gathered.set.contacts() {
         if contact.is_first {
+            let kept = contacts.kept(contact.point);
+            let touch = bodies[kept.body].kept_mut(kept);
             set_vector(touch, 0, contact.slip);
             touch[4] = T::from_f64(if contact.slides { SLIDES } else { STICKS });
         }
-        if counts_work {
-            let mean = 0.5 * (contact.force() + contact.normal * *was + *rubbed);
-            let along = if contact.slides { contact.along(relative).length() } else { 0.0 };
-            touch[6] = T::from_f64(touch[6].to_f64() + along);
-            touch[7] = T::from_f64(touch[7].to_f64() - mean.dot(relative));
-        }
         let deepest = &mut contacts.surface.figures.deepest;
         *deepest = deepest.max(-contact.outside);
+    }
+}
+
+/// Counts what contact takes in a step that is found, and how far points slide. Forces work with the mean of those at
+/// both ends, as all in implicit steps. Of those at the beginning, `last`, only the sum at each node is known
+/// ([`ContactForce`]): what they take is shared out among all nodes that bore some of bodies that meet, by how much
+/// they bore. `first_axis` is that of a body, and `moved` says how far the node goes whose first axis it is (m).
+pub(crate) fn count_work(
+    world: &mut World,
+    last: &[(Entity, Reals)],
+    first_axis: impl Fn(Entity) -> Option<usize>,
+    moved: impl Fn(usize) -> DVec3,
+) {
+    let Some(contacts) = world.get_resource::<SurfaceContacts>() else { return };
+    let (surface, bodies) = (&contacts.surface, &contacts.bodies);
+    let firsts: Vec<Option<usize>> = bodies.iter().map(|&body| first_axis(body)).collect();
+    let mut counted = Vec::new();
+    for contact in surface.gathered.set.contacts() {
+        let part = |(slot, weight): (usize, f64)| {
+            let (body, row) = surface.nodes[surface.near.nodes[slot] as usize];
+            Some(moved(firsts[body as usize]? + 3 * row as usize) * weight)
+        };
+        let relative: DVec3 = contact.parts.iter().filter_map(part).sum();
+        let slid = if contact.slides { contact.along(relative).length() } else { 0.0 };
+        let kept = contacts.kept(contact.point);
+        counted.push((bodies[kept.body], kept, [slid, -0.5 * contact.force().dot(relative)]));
+    }
+    let groups = contacts.groups();
+    // of each group what its nodes bore, and what that took
+    let mut sums = vec![[0.0; 2]; bodies.len()];
+    let mut bore = Vec::new();
+    for (body, (entity, first)) in bodies.iter().zip(&firsts).enumerate() {
+        let forces = last.iter().find(|(other, _)| other == entity);
+        let (Some((_, forces)), &Some(first)) = (forces, first) else { continue };
+        for (row, force) in forces.vectors().enumerate().filter(|(_, force)| *force != DVec3::ZERO) {
+            let [all, taken] = &mut sums[groups[body]];
+            *all += force.length();
+            *taken -= 0.5 * force.dot(moved(first + 3 * row));
+            bore.push((body, row, force.length()));
+        }
+    }
+    for (body, row, force) in bore {
+        let [all, taken] = sums[groups[body]];
+        let kept = Kept { body, of_face: false, first: MEETING_NUMBERS * row };
+        counted.push((bodies[body], kept, [0.0, taken * force / all]));
+    }
+    for (body, Kept { of_face, first, .. }, parts) in counted {
+        let add = |touch: &mut Reals| {
+            for (number, part) in (first + 6..).zip(parts) {
+                let sum = touch.get(number) + part;
+                touch.set(number, sum);
+            }
+        };
+        // what contact goes on from stays as it is
+        if let Some(mut touch) = world.get_mut::<FaceTouch>(body).filter(|_| of_face) {
+            add(&mut touch.bypass_change_detection().0);
+        } else if let Some(mut touch) = world.get_mut::<SurfaceTouch>(body) {
+            add(&mut touch.bypass_change_detection().0);
+        }
+    }
+}
+
+impl SurfaceContacts {
+    /// Of each body the number of its group: those that meet each other, by way of others or not.
+    fn groups(&self) -> Vec<usize> {
+        let count = self.bodies.len();
+        let mut groups: Vec<usize> = (0..count).collect();
+        for (pair, _) in self.meetings.iter().enumerate().filter(|(_, meeting)| meeting.is_some()) {
+            let [one, other] = [groups[pair / count], groups[pair % count]];
+            groups.iter_mut().filter(|group| **group == other).for_each(|group| *group = one);
+        }
+        groups
     }
 }

@@ -15,21 +15,22 @@ use std::ops::{Deref, DerefMut, Range};
 /// Points and faces that are nearer than this at rest, in reaches, are never in each other's way.
 pub(super) const NEAR_AT_REST: f64 = 1.5;
 
-/// How deep behind a face is still its inside at most, in edges; of thin elements half of what is behind it.
+/// How deep behind a face is still its inside at most, in edges of its own body; of thin elements half of what is
+/// behind it.
 const DEEPEST: f64 = 0.5;
 
 /// Numbers of a point that are of its last step: what it has slid and lost since the start stays.
 const OF_A_STEP: usize = 6;
 
-/// Which triangles a step looks at beyond those within thickness and motion (edges).
+/// Which triangles a step looks at beyond those within thickness and motion, in the smaller edges of both bodies.
 pub(super) const MARGIN: f64 = 1e-2;
 
 impl SurfaceContacts {
-    /// How near points and faces of one piece of a body are at rest that are never in each other's way (m); nothing
-    /// where no body meets itself.
-    pub fn near_at_rest(&self) -> Option<f64> {
-        let itself = (0..self.bodies.len() as u32).filter_map(|body| self.meeting(body, body));
-        itself.map(|of| NEAR_AT_REST * (of.thickness + MARGIN * self.edge)).reduce(f64::max)
+    /// How near points and faces of one piece of a body, by its place among all, are at rest that are never in each
+    /// other's way (m); nothing where it does not meet itself.
+    pub fn near_at_rest(&self, body: usize) -> Option<f64> {
+        let itself = self.meeting(body as u32, body as u32)?;
+        Some(NEAR_AT_REST * (itself.thickness + MARGIN * itself.edge))
     }
 }
 
@@ -130,6 +131,7 @@ fn survey(
     let mut surface = std::mem::take(&mut contacts.surface);
     let (mut triangles, mut owners, mut depths) = (Vec::<[u32; 3]>::new(), Vec::new(), Vec::new());
     let (mut of_faces, mut places, mut facets) = (Vec::<Point>::new(), Vec::new(), Vec::new());
+    let meets_itself = (0..contacts.bodies.len()).any(|body| contacts.near_at_rest(body).is_some());
     for (number, &body) in (0..).zip(&contacts.bodies) {
         let (Ok(authoring), Ok((_, columns))) = (authorings.get(body), bodies.get(body)) else { continue };
         let is_alive = |block: u32, row: u32| {
@@ -168,14 +170,22 @@ fn survey(
             surface.points.push(Point::node(number, surface.nodes.len() as u32));
             surface.nodes.push((number, row));
         }
-        if contacts.near_at_rest().is_some() {
+        if meets_itself {
             surface.pieces.extend(pieces(authoring, &rows));
         }
     }
     surface.places_kept = surface.nodes.iter().map(|&(_, row)| row).chain(places).collect();
     surface.facets = if of_faces.is_empty() { Vec::new() } else { facets };
     surface.points.extend(of_faces);
-    let depths = depths.into_iter().map(|depth| f64::min(depth, DEEPEST * contacts.edge)).collect();
+    let mut deepest = vec![0.0_f64; contacts.bodies.len()];
+    for (depth, &owner) in depths.iter_mut().zip(&owners) {
+        *depth = f64::min(*depth, DEEPEST * contacts.edges[owner as usize]);
+        deepest[owner as usize] = deepest[owner as usize].max(*depth);
+    }
+    // of those that are there
+    let shallowest = deepest.iter().copied().filter(|depth| *depth > 0.0).reduce(f64::min).unwrap_or(0.0);
+    surface.beyond = deepest.into_iter().map(|depth| (depth - shallowest).max(0.0)).collect();
+    surface.shallowest = shallowest;
     surface.triangles = Surfaces::new(surface.nodes.len(), triangles, owners, depths);
     surface.gathered.slots = vec![u32::MAX; surface.nodes.len()];
     surface.places = vec![DVec3::ZERO; surface.nodes.len()];
@@ -231,12 +241,16 @@ fn extent(corners: [u32; 3], element: &[u32], row: impl Fn(u32) -> u32, rest: &[
 
 /// Notes which points and faces of one piece of a body are near each other at rest.
 fn near_at_rest(contacts: &mut SurfaceContacts, rest: &[DVec3]) {
-    let Some(radius) = contacts.near_at_rest() else { return };
+    if contacts.surface.pieces.is_empty() {
+        return;
+    }
+    let near: Vec<f64> = (0..contacts.bodies.len()).map(|body| contacts.near_at_rest(body).unwrap_or(0.0)).collect();
     let meets = |point: u32, face: u32, of_face: bool| point == face && contacts.meets(point, face, of_face);
     let surface = &contacts.surface;
-    let finder = Finder { surfaces: &surface.triangles, points: &surface.points, meets: &meets, apart: &[] };
+    let Surface { triangles, points, .. } = surface;
+    let finder = Finder { surfaces: triangles, points, meets: &meets, apart: &[], beyond: &near };
     let cpu = Cpu::new(1, 0, Default::default());
-    let lists = Lists::find(&finder, &surface.trees, rest, radius, &cpu);
+    let lists = Lists::find(&finder, &surface.trees, rest, 0.0, &cpu);
     let mut apart = Vec::new();
     for (place, &point) in lists.points.iter().enumerate() {
         let of_point = surface.pieces[surface.points[point as usize].nodes[0] as usize];

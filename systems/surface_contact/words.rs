@@ -1,12 +1,13 @@
 //! What kernels know of surfaces, and of what may be near what: words of buffers, floats as their bits.
 
+use super::survey::MARGIN;
 use super::{Surface, SurfaceContacts};
 use crate::components::*;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
 /// Words of `surface_faces` about two bodies that may meet.
-const MEETING_WORDS: usize = 6;
+const MEETING_WORDS: usize = 9;
 
 /// What meets of two bodies.
 const NODES_MEET: u32 = 1;
@@ -229,7 +230,10 @@ fn meeting_words(meeting: Option<&super::Meeting>) -> [u32; MEETING_WORDS] {
     let spring = of.spring.unwrap_or(ContactSpring { share: 0.0, damping: 0.0 });
     let points = if of.faces { FACES_MEET } else { NODES_MEET };
     let [stick, slide] = of.friction;
-    let [stick, slide, thickness, share, damping] =
-        [stick, slide, of.thickness, spring.share, spring.damping].map(|number| (number as f32).to_bits());
-    [points | if of.edges { EDGES_MEET } else { 0 }, stick, slide, thickness, share, damping]
+    let of_spring = [of.thickness, spring.share, spring.damping];
+    let [stick, slide] = [stick, slide].map(|number| (number as f32).to_bits());
+    let [thickness, share, damping] = of_spring.map(|number| (number as f32).to_bits());
+    let [edge, margin, settling] = [of.edge, MARGIN * of.edge, of.settling].map(|number| (number as f32).to_bits());
+    let what = points | if of.edges { EDGES_MEET } else { 0 };
+    [what, stick, slide, thickness, share, damping, edge, margin, settling]
 }

@@ -29,8 +29,6 @@ struct Press {
     /// [`TouchingSpring::slopes`].
     slopes: [DMat3; 2],
     state: f64,
-    /// How far the node goes along the tool's surface (m).
-    along: f64,
 }
 
 /// Finds the springs of tools at nodes where they are, in a step whose signals are there. `first_axis` is that of a
@@ -104,13 +102,11 @@ impl ToolContacts {
                 true => self.press_of((step, springs), tool, &at, &last),
                 false => None,
             };
-            let ToolInStep { pose, change, .. } = &step.tools[tool];
             if let Some(press) = &press {
                 nodes.add_load(row, press.force);
             }
             if press.is_some() || last.state != 0.0 {
-                let tool_step = step.counts_work.then(|| change.place(pose.inverse(place)));
-                note(of_tool, (&at, tool_step), &last, press);
+                note(of_tool, press);
             }
         }
     }
@@ -138,34 +134,71 @@ impl ToolContacts {
         }
         let relative = at.step - change.place(of_tool);
         let press = spring.press(springs, at.mass, distance, [normal.dot(relative), step.time]);
-        let along = along_surface(relative, normal);
         let friction = contact.friction[usize::from(last.state != STICKS)];
-        let slip = along - along_surface(last.force, normal) / press.stiffness;
+        let slip = along_surface(relative, normal) - along_surface(last.force, normal) / press.stiffness;
         let rubbing = press.rub(normal, slip, friction);
         let (force, slopes) = press.with(normal, &rubbing);
         let state = if rubbing.slides { SLIDES } else { STICKS };
-        Some(Press { force, slopes, state, along: along.length() })
+        Some(Press { force, slopes, state })
     }
 }
 
-/// Notes what a tool does at the end of a step in which it goes so far (m); on the way to rest work is not counted.
-/// Forces work with the mean of those at both ends, as all in implicit steps.
-fn note<T: SimdScalar>(of_tool: &mut [T], (at, tool_step): (&At, Option<DVec3>), last: &Last, press: Option<Press>) {
-    let nothing = Press { force: DVec3::ZERO, slopes: [DMat3::ZERO; 2], state: 0.0, along: 0.0 };
-    let Press { force, state, along, .. } = press.unwrap_or(nothing);
+/// Notes what a tool does at the end of a step.
+fn note<T: SimdScalar>(of_tool: &mut [T], press: Option<Press>) {
+    let (force, state) = press.map_or((DVec3::ZERO, 0.0), |press| (press.force, press.state));
     for i in 0..3 {
         of_tool[i] = T::from_f64(force[i]);
     }
     of_tool[3] = T::from_f64(state);
-    if let Some(tool_step) = tool_step {
-        let mean = 0.5 * (last.force + force);
-        let work = mean.dot(tool_step);
-        let mut add = |number: usize, part: f64| of_tool[number] += T::from_f64(part);
-        add(4, if state == SLIDES { along } else { 0.0 });
-        add(5, work);
-        add(6, work - (mean * at.free).dot(at.step));
-    }
     for (i, felt) in of_tool[TOUCH_NUMBERS..].iter_mut().enumerate() {
         *felt += T::from_f64(force[i]);
+    }
+}
+
+/// Counts what tools do in a step that is found, what they take of that, and how far nodes slide. Forces work with the
+/// mean of those at both ends, as all in implicit steps: `last` is [`ToolTouch`] as it was before those at the end were
+/// noted. `first_axis` is that of a body, and `moved` says how far the node goes whose first axis it is (m).
+pub(crate) fn count_work(
+    world: &mut World,
+    last: &[(Entity, Reals)],
+    first_axis: impl Fn(Entity) -> Option<usize>,
+    moved: impl Fn(usize) -> DVec3,
+) {
+    type Bodies<'a> = (Entity, &'a ToolContacts, &'a ToolTouch, &'a RestPosition, &'a Displacement);
+    let mut bodies = world.query::<Bodies<'_>>();
+    let (clock, signals) = (world.resource::<Clock>(), world.resource::<Signals>());
+    let mut counted = Vec::new();
+    for (body, contacts, touch, rest, u) in bodies.iter(world) {
+        let last = last.iter().find(|(other, _)| *other == body);
+        let (Some(first), Some((_, last))) = (first_axis(body), last) else { continue };
+        let in_step = contacts.in_step(clock, signals);
+        for (number, &row) in contacts.rows.iter().enumerate() {
+            let row = row as usize;
+            for tool in 0..contacts.tools.len() {
+                let at = contacts.numbers() * number + contacts.numbers_a_tool() * tool;
+                let state = touch.get(at + 3);
+                if state == 0.0 && last.get(at + 3) == 0.0 {
+                    continue;
+                }
+                let ToolInStep { pose, change, .. } = &in_step.tools[tool];
+                let of_tool = pose.inverse(rest.0[row] - contacts.reference + u.vector(row));
+                let (tool_step, moved) = (change.place(of_tool), moved(first + 3 * row));
+                let mean = 0.5 * (last.vector_at(at) + touch.vector_at(at));
+                let work = mean.dot(tool_step);
+                let mut slid = 0.0;
+                if state == SLIDES {
+                    let normal = pose.rotation * contacts.tools[tool].geometry.distance(of_tool).1;
+                    slid = along_surface(moved - tool_step, normal).length();
+                }
+                counted.push((body, at + 4, [slid, work, work - mean.dot(moved)]));
+            }
+        }
+    }
+    for (body, at, parts) in counted {
+        let Some(mut touch) = world.get_mut::<ToolTouch>(body) else { continue };
+        for (number, part) in (at..).zip(parts) {
+            let sum = touch.get(number) + part;
+            touch.set(number, sum);
+        }
     }
 }

@@ -24,6 +24,21 @@ const TAKEN: &str = "tools: {\"tip\": (shape: Tube(length: 0.03, inner: 4e-3, ou
 const FLAT: &str = "tools: {\"tip\": (shape: Plane(), rotation: (180, 0, 0), at: (0, 0, 0.0101), moves: [(displacement: (1e-3, 0, -1e-3), curve: Smooth(end: 0.08))])},
     contacts: [Tool(tool: \"tip\", friction: 0.3)]";
 
+/// On a GPU places are counted in f32 from the middle of the body: of copies that stand so far from each other that
+/// gaps lose their digits it is told. The CPU counts them in f64.
+#[test]
+fn copies_that_stand_too_far_from_each_other_for_a_gpu_are_told_of() {
+    for run in cpu_and_long_gpu() {
+        for (apart, is_far) in [("0.03", false), ("20", true)] {
+            let mut copies = blocks(&run, "Hex8", &format!("copies: 3, apart: ({apart}, 0, 0)"), FLAT);
+            let warnings = copies.summary("finished").unwrap().guards.warnings;
+            let told = warnings.iter().filter(|notice| notice.criterion == "rounding" && notice.part == "b").count();
+            let expected = is_far && copies.is_on_gpu();
+            assert_eq!(told, usize::from(expected), "{}, {apart} m: {warnings:?}", run.name);
+        }
+    }
+}
+
 #[test]
 #[ignore = "long"]
 fn copies_under_a_tool_do_what_the_body_does_by_itself() {

@@ -1,7 +1,7 @@
 //! Points of faces: how even pressures are across meshes that do not match, friction, and what else must hold of them.
 
 use crate::configurations::{Configuration, ELEMENTS, configurations, near};
-use sinew::components::FacePlaces;
+use sinew::components::{FacePlaces, Precision};
 
 /// Two blocks between walls whose cells do not match, pressed together (C12): by how much stresses are off the
 /// pressure, and the sum of what one feels (N).
@@ -60,8 +60,15 @@ fn points_of_faces_pass_the_patch_test() {
 #[ignore = "long"]
 fn points_of_faces_pass_the_patch_test_on_other_meshes_and_on_a_gpu() {
     for run in configurations() {
-        let elements = if run.name.starts_with("GPU") { &ELEMENTS[..1] } else { &ELEMENTS[..] };
-        for elements in elements {
+        if run.name.starts_with("GPU") {
+            // in software one takes long enough
+            let (worst, force) = patch(&run, ELEMENTS[0], (7, 5), ", sweeps: 1, points: Faces");
+            near(&format!("{}: force", run.name), force, 100.0 * 4e-4, 0.04, 0.1);
+            assert!(worst < 0.025, "{}: {worst}", run.name);
+            continue;
+        }
+        // the number type changes nothing of it: one kind tells
+        for elements in &ELEMENTS[..if run.options.precision == Precision::F64 { ELEMENTS.len() } else { 1 }] {
             is_even(&run, elements, (7, 5));
         }
     }

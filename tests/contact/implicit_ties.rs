@@ -15,6 +15,29 @@ fn solved(text: &str, step: &str) -> String {
         .replace("Tool(tool: \"table\")", "Tool(tool: \"table\", law: Penalty(share: 1))")
 }
 
+/// Of an implicit step force, length and direction are those of its end: the thread that a cube swings on pulls at what
+/// it hangs on as that is held.
+#[test]
+fn a_suture_pulls_along_itself_at_the_end_of_the_step() {
+    let text = "(duration: 0.1, solver: Implicit(step: 5e-3), bodies: {
+            \"a\": (mesh: Box(size: (0.01, 0.01, 0.01), cells: (1, 1, 1), elements: Hex8), material: \"m\"),
+            \"b\": (mesh: Box(size: (0.01, 0.01, 0.01), cells: (1, 1, 1), elements: Hex8), translate: (0.02, 0, 0),
+                material: \"m\", velocity: (0, 0, 0.3))},
+        materials: {\"m\": (density: 1000, neo_hookean: Young(young: 1e5, poisson: 0.3))},
+        constraints: [Fixed(body: \"a\", on: All)],
+        attachments: [Suture(name: \"s\", from: (body: \"a\", at: (0.01, 0.005, 0.005)),
+            to: (body: \"b\", at: (0.02, 0.005, 0.005)), stiffness: 10, tighten: 1e-3)],
+        probes: {\"r\": (body: \"a\", what: Reaction, on: All)})";
+    let mut simulation = start(text, Precision::F64, 1);
+    for time in [0.02, 0.04, 0.1] {
+        simulation.advance_to(time).unwrap();
+        let force = simulation.attachment("s").unwrap().force;
+        let held = DVec3::from_slice(&simulation.probe("r").unwrap());
+        near(&format!("{time} s"), (force + held).length(), 0.0, 1e-3, 1e-9);
+        assert!(force.length() > 1e-3, "{time} s: {force}");
+    }
+}
+
 /// As explicit steps do it (`sutures`): strength, what it stored, and nothing that is left.
 #[test]
 fn a_suture_tears_at_its_strength() {

@@ -279,10 +279,14 @@ fn a_tube_pressed_flat_does_not_pass_itself() {
                 contacts: [Tool(tool: \"top\"), Tool(tool: \"bottom\"){contact}])"
             )
         };
-        let mut alone = run.start(&scene(""));
-        alone.advance_to(0.4).unwrap();
-        let passed = passed_by(&mut alone, &scene(""));
-        assert!(passed > 10, "without contact the walls pass each other: {passed} nodes");
+        let mut passed = None;
+        // once is enough
+        if run.options.precision == Precision::F64 {
+            let mut alone = run.start(&scene(""));
+            alone.advance_to(0.4).unwrap();
+            passed = Some(passed_by(&mut alone, &scene("")));
+            assert!(passed > Some(10), "without contact the walls pass each other: {passed:?} nodes");
+        }
         let mut simulation = run.start(&scene(", Itself()"));
         simulation.advance_to(0.4).unwrap();
         let view = simulation.column::<SurfaceTouch>("t").unwrap();
@@ -290,7 +294,7 @@ fn a_tube_pressed_flat_does_not_pass_itself() {
         let rows = numbers.len() / MEETING_NUMBERS;
         let touching = (0..rows).filter(|row| numbers.get(MEETING_NUMBERS * row + 4) > 1.0).count();
         let deepest = (0..rows).map(|row| numbers.get(MEETING_NUMBERS * row + 5)).fold(0.0, f64::min);
-        println!("{}: {touching} nodes touch, {deepest:.2e} m; without contact {passed} are inside", run.name);
+        println!("{}: {touching} nodes touch, {deepest:.2e} m; without contact {passed:?} are inside", run.name);
         assert!(touching > 30 && deepest > -2e-4, "{}: {touching} touch, {deepest} m", run.name);
         assert_eq!(passed_by(&mut simulation, &scene("")), 0, "{}", run.name);
     }

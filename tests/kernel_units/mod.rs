@@ -98,7 +98,8 @@ fn a_buffer_of_two_types_is_refused_by_name() {
     assert!(error.starts_with(problem), "{error}");
 }
 
-/// The fragments of a scene with a tool of triangles that touches, takes, sucks and holds, and with a thread.
+/// The fragments of a scene with a tool of triangles that touches, takes, sucks and holds, with a thread and with mass
+/// that is scaled.
 pub fn of_tools() -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
@@ -107,6 +108,7 @@ pub fn of_tools() -> Vec<String> {
         materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 1)},
         tools: {\"t\": (mesh: (path: \"tool.obj\"))}, contacts: [Tool(tool: \"t\")],
         removal: [(when: InTool(tool: \"t\", bore: 0.1, reach: 0.5, rate: 1e-3))],
+        integration: (when_unstable: ScaleMass(most: 0.1)),
         suction: [(tool: \"t\", bore: 0.1, pressure: 100, reach: 0.5)],
         attachments: [Grasp(tool: \"t\", on: All, closed: Step(start: 0.5)),
             Suture(from: (at: (0, 0, 2)), to: (at: (1, 1, 3)), stiffness: 1)])";
@@ -150,8 +152,8 @@ pub fn meeting() -> Simulation {
         "(duration: 1, bodies: {{\"a\": {}, \"b\": {}, \"c\": {}}},
         materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
         contacts: [Between(bodies: (\"a\", \"b\"), friction: 0.3, edges: true),
-            Between(bodies: (\"b\", \"c\"), points: Faces)],
-        tools: {{\"t\": (shape: Sphere(radius: 0.1))}},
+            Between(bodies: (\"b\", \"c\"), points: Faces), Tool(tool: \"u\", body: \"a\")],
+        tools: {{\"t\": (shape: Sphere(radius: 0.1)), \"u\": (shape: Sphere(radius: 0.2), at: (0, 0, -1))}},
         attachments: [Grasp(tool: \"t\", body: \"a\", on: All, closed: Step())])",
         block(0.0),
         block(1.0),

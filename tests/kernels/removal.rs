@@ -2,7 +2,8 @@
 
 use super::kernel_worlds::{ALONG, AROUND, Effects, GROWING, LAWS, small_strains};
 use super::magnitude::{ROUNDINGS, magnitude};
-use super::pair::{UNIT, run};
+use super::pair::{UNIT, entities, run};
+use bevy_ecs::prelude::World;
 use sinew::components::*;
 
 #[test]
@@ -40,6 +41,30 @@ fn the_same_elements_are_removed() {
                 26.0 * UNIT * pair.host().get::<DampingCoefficient>(body).unwrap().get(i)
             });
         }
+    }
+}
+
+/// Where mass is scaled, what was added to elements goes with them, in the same step.
+#[test]
+fn added_mass_goes_with_the_same_elements() {
+    let scale = |world: &mut World| {
+        for block in entities::<Block>(world) {
+            let count = world.get::<Block>(block).unwrap().count;
+            let added = (0..count).map(|row| 1e-4 * ((row % 7) as f64 + 1.0 / 3.0)).collect();
+            world.entity_mut(block).insert(AddedMass(added));
+        }
+        for body in entities::<Mass>(world) {
+            let mass = world.get::<Mass>(body).unwrap().0.clone();
+            world.entity_mut(body).insert(InertialMass(mass));
+        }
+    };
+    for damping in [false, true] {
+        let effects = Effects { removal: true, damping, ..Effects::default() };
+        let Some(mut pair) = run("element_removal", &effects, 9, scale) else { return };
+        assert!(pair.changed::<Alive>() > 100);
+        // sums of up to 48 numbers
+        pair.agree::<InertialMass>(|pair, body, i| 50.0 * UNIT * pair.host().get::<InertialMass>(body).unwrap().get(i));
+        assert!(pair.changed::<InertialMass>() > 100);
     }
 }
 

@@ -35,9 +35,10 @@ fn mouths_mark_the_same_faces() {
                     assert_eq!(a, b, "node {i} of {body}");
                     continue;
                 }
-                // lengths of vectors, and a sum of four
+                // areas of faces and parts of them are sums over four sides of triangles with the middle of the mouth,
+                // which are up to twelve times as large as a face, with a rounding of two units each, and their ratio
                 let difference = (share(a) - share(b)).abs();
-                assert!(difference <= 64.0 * UNIT, "face {i} of {body}: {} and {}", share(a), share(b));
+                assert!(difference <= 200.0 * UNIT, "face {i} of {body}: {} and {}", share(a), share(b));
                 shares += usize::from(share(a) > 0.0 && share(a) < 1.0);
             }
         }

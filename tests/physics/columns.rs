@@ -3,7 +3,9 @@
 use glam::DVec3;
 use sinew::Simulation;
 use sinew::backend::device::bring_to_host;
-use sinew::components::{Authoring, Column, DisplacementIncrement, ExternalForce, InternalForce, Mass, Reals};
+use sinew::components::{
+    Authoring, Column, DisplacementIncrement, ExternalForce, InertialMass, InternalForce, Mass, Reals,
+};
 
 fn column<C: Column + std::ops::Deref<Target = Reals>>(simulation: &mut Simulation, body: &str) -> Vec<DVec3> {
     let entity = simulation.body(body).unwrap();
@@ -37,9 +39,18 @@ pub fn positions(simulation: &mut Simulation, body: &str) -> Vec<DVec3> {
 
 /// Masses of nodes (kg).
 pub fn masses(simulation: &mut Simulation, body: &str) -> Vec<f64> {
+    numbers::<Mass>(simulation, body)
+}
+
+/// What nodes move with (kg), where mass is scaled.
+pub fn inertia(simulation: &mut Simulation, body: &str) -> Vec<f64> {
+    numbers::<InertialMass>(simulation, body)
+}
+
+fn numbers<C: Column + std::ops::Deref<Target = Reals>>(simulation: &mut Simulation, body: &str) -> Vec<f64> {
     let entity = simulation.body(body).unwrap();
-    bring_to_host(simulation.world_mut(), |_, name| name == Mass::NAME).unwrap();
+    bring_to_host(simulation.world_mut(), |_, name| name == C::NAME).unwrap();
     let world = simulation.world();
-    let mass = world.get::<Mass>(entity).unwrap();
-    world.get::<Authoring>(entity).unwrap().node_rows.iter().map(|&row| mass.get(row as usize)).collect()
+    let column = world.get::<C>(entity).unwrap();
+    world.get::<Authoring>(entity).unwrap().node_rows.iter().map(|&row| column.get(row as usize)).collect()
 }

@@ -1,8 +1,8 @@
 //! Guards of implicit steps: they see the ends of steps, count the work that was done on elements, and end a run whose
 //! steps make energy.
 
-use crate::configurations::{cpu_and_long_gpu, scene_of};
-use crate::implicit::options;
+use crate::configurations::{cpu_and_long_gpu, near, scene_of};
+use crate::implicit::{options, start};
 use sinew::components::Precision;
 use sinew::observation::sample;
 use sinew::{Error, Simulation};
@@ -77,22 +77,61 @@ fn lens_let_go(solver: &str) -> String {
 /// times what it held; it must not end as if nothing were wrong. Those of implicit Euler take energy, and end.
 #[test]
 fn implicit_steps_that_make_energy_end_the_run() {
-    let end = |scheme: &str, step: f64| {
+    let end = |scheme: &str, (step, precision): (f64, Precision)| {
         let scene = scene_of(&lens_let_go(&format!("Implicit(scheme: {scheme}, step: {step})")), Path::new("scenes"));
-        let mut simulation = Simulation::new(&scene, &options(Precision::F32, 1)).unwrap();
+        let mut simulation = Simulation::new(&scene, &options(precision, 1)).unwrap();
         let ended = simulation.finish();
         (ended, simulation.guards(), simulation.energies().unwrap())
     };
-    let (ended, guards, energies) = end("GeneralizedAlpha()", 0.02);
+    // of such steps rounding in f32 decides whether one is found at all
+    let (ended, guards, energies) = end("GeneralizedAlpha()", (0.02, Precision::F64));
     println!("{ended:?}\n{guards:?}\n{energies:?}");
     let Err(Error::Unstable(broken)) = ended else { panic!("{ended:?}") };
     assert_eq!(broken.criterion.name, "energy", "{broken:?}");
     assert!(broken.to_string().contains("lower `step` of the solver"), "{broken}");
     for step in [0.02, 0.01, 0.002] {
-        let (ended, guards, energies) = end("Euler", step);
+        let (ended, guards, energies) = end("Euler", (step, Precision::F32));
         println!("{step}: {guards:?}\n{energies:?}");
         ended.unwrap();
         let least = guards.least_volume_ratio.as_ref().unwrap().value;
         assert!(guards.imbalance < 0.1 && least > 0.5, "{guards:?}");
+    }
+}
+
+/// A block that sticks to a belt by springs far stiffer than itself: iterations that leave many times what they began
+/// with have found nothing.
+#[test]
+fn a_step_whose_iterations_lead_away_ends_the_run() {
+    let mut simulation = start(
+        "(duration: 0.3, solver: Implicit(step: 0.02),
+        bodies: {\"b\": (mesh: Box(size: (0.02, 0.02, 0.01), cells: (4, 4, 2), elements: Hex8), material: \"m\")},
+        materials: {\"m\": (density: 1000, neo_hookean: Young(young: 5e4, poisson: 0.3), stiffness_damping: 1e-3)},
+        loads: [Gravity(acceleration: (0, 0, -9.81))],
+        tools: {\"k\": (shape: Plane(), path: [(t: 0, at: (0, 0, 0)), (t: 0.3, at: (0.03, 0, 0))])},
+        contacts: [Tool(tool: \"k\", friction: 0.8, law: Penalty(share: 30))])",
+    );
+    let said = simulation.finish().unwrap_err().to_string();
+    assert!(said.contains("times the residual of their beginning is left"), "{said}");
+}
+
+/// A bar that is at rest and is pulled: no residual is there before its end has been moved, and one iteration leaves
+/// many times that.
+#[test]
+fn what_is_pulled_from_rest_may_take_one_iteration_a_step() {
+    for law in ["linear", "corotational", "neo_hookean"] {
+        let mut simulation = start(&format!(
+            "(duration: 0.3, solver: Implicit(step: 0.01, newton: 1),
+            bodies: {{\"b\": (mesh: Box(size: (0.02, 0.02, 0.04), cells: (2, 2, 4), elements: Hex8), material: \"m\")}},
+            materials: {{\"m\": (density: 1000, {law}: Young(young: 5e4, poisson: 0.3), stiffness_damping: 5e-3)}},
+            constraints: [
+                Fixed(on: Set(\"z0\"), axes: [Z]), Fixed(on: Set(\"x0\"), axes: [X]), Fixed(on: Set(\"y0\"), axes: [Y]),
+                Prescribed(on: Set(\"z1\"), axes: [Z], displacement: (0, 0, 0.002), curve: Smooth(end: 0.2)),
+            ])"
+        ));
+        simulation.finish().unwrap();
+        let rest = simulation.rest_positions("b").unwrap();
+        let end = simulation.displacements("b").unwrap();
+        let far = end.iter().zip(&rest).map(|(u, x)| (u.z - 0.05 * x.z).abs()).fold(0.0, f64::max);
+        near(law, far, 0.0, 0.002, 0.02);
     }
 }

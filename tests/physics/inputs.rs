@@ -291,6 +291,30 @@ fn what_cannot_be_set_or_replayed_says_why() {
     assert!(told(none.set_input("tool", 1.0)).contains("curve: Input(name: \"tool\")"));
 }
 
+/// What tools and threads follow is told as what loads and motions do.
+#[test]
+fn inputs_of_tools_and_threads_tell_what_they_multiply() {
+    let acts = "tools: {\"t\": (shape: Tube(length: 0.05, inner: 0.01, outer: 0.012), at: (0.05, 0.05, 0.11))},
+        suction: [(tool: \"t\", pressure: 100, reach: 0.02, curve: Input(name: \"i\"))],
+        removal: [(on: Elements([0]), when: InTool(tool: \"t\", reach: 0.02, rate: 1e-9, curve: Input(name: \"i\"))),
+            (on: Elements([1]),
+                when: InTool(tool: \"t\", reach: 0.02, threshold: StretchAbove(2), curve: Input(name: \"i\")))],
+        attachments: [Grasp(tool: \"t\", on: Nodes([0]), closed: Input(name: \"i\")),
+            Suture(from: (at: (0, 0, 0)), to: (at: (0.1, 0.1, 0.1)), stiffness: 1, tighten: 1e-3,
+                curve: Input(name: \"i\"))]";
+    let simulation = Simulation::new(&scene_of(&cube(acts, ""), Path::new(".")), &Options::default()).unwrap();
+    let uses: Vec<_> =
+        simulation.inputs().into_iter().flat_map(|input| input.uses).map(|u| (u.path, u.of, u.unit)).collect();
+    let expected = [
+        ("removal[0].when.curve", "rate", "m³/s"),
+        ("removal[1].when.curve", "threshold", "1"),
+        ("suction[0].curve", "pressure", "Pa"),
+        ("attachments[0].closed", "closed", "1"),
+        ("attachments[1].curve", "tighten", "m"),
+    ];
+    assert_eq!(uses, expected.map(|(path, of, unit)| (path.to_string(), of, Some(unit))));
+}
+
 /// The same name is the same input; a rate is above 0; a motion that may jump is warned of.
 #[test]
 fn wrong_inputs_are_told_with_what_is_allowed() {

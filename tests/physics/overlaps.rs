@@ -81,6 +81,27 @@ fn a_body_that_passes_through_another_is_warned_of_when_it_gets_there() {
     }
 }
 
+/// What is told of two bodies that overlap is what is between these two, and not what is between others.
+#[test]
+fn who_overlaps_is_told_what_keeps_them_apart() {
+    let third: Cube = (2, 0.1, [0.0, 0.0, 0.5]);
+    let glued: [Cube; 3] = [(2, 0.1, [0.0; 3]), (3, 0.1, [0.097, 0.0, 0.0]), third];
+    let half_in: [Cube; 3] = [(2, 0.1, [0.0; 3]), (2, 0.1, [0.05, 0.0, 0.0]), third];
+    let cases = [
+        (&glued, "attachments: [Glue(bodies: (\"b0\", \"b1\"))]", "they are glued or tied"),
+        (
+            &half_in,
+            "contacts: [Between(bodies: (\"b0\", \"b2\")), Between(bodies: (\"b1\", \"b2\"))]",
+            "nothing keeps them apart",
+        ),
+    ];
+    let run = configurations().remove(0);
+    for (cells, rest, says) in cases {
+        let told = warned(&run.options, "Hex8", cells, rest);
+        assert!(told.len() == 1 && told[0].message.contains(says), "{rest}: {told:?}");
+    }
+}
+
 #[test]
 fn elements_that_are_gone_overlap_with_nothing() {
     let cells: [Cube; 2] = [(2, 0.1, [0.0; 3]), (2, 0.1, [0.15, 0.0, 0.0])];

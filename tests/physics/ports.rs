@@ -114,6 +114,41 @@ fn a_touch_is_the_mean_of_what_the_tool_felt() {
     }
 }
 
+/// What a tool sucks draws at the hand, and takes a proxy along to it.
+#[test]
+fn a_hand_feels_what_its_tool_sucks() {
+    for run in cpu_and_long_gpu() {
+        let mut simulation = run.start(
+            "(duration: 1, bodies: {\"b\": (mesh: Box(size: (0.01, 0.01, 0.002), cells: (4, 4, 1)), material: \"m\",
+                translate: (-0.005, -0.005, -0.002))},
+            materials: {\"m\": (density: 1000, neo_hookean: Young(young: 5e4, poisson: 0.3), damping: 500)},
+            constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: -0.002))],
+            tools: {\"tip\": (shape: Tube(length: 0.02, inner: 0.002, outer: 0.003), at: (3e-4, 0, 1e-4),
+                port: (name: \"hand\", speed: 0.1, follow: Proxy(stiffness: 200)))},
+            suction: [(tool: \"tip\", pressure: 1000, reach: 0.001)])",
+        );
+        let mut port = simulation.open_port("hand").unwrap();
+        let place = DVec3::new(3e-4, 0.0, 1e-4);
+        let (mut seen, mut last) = (0, Touch::default());
+        while simulation.time() < 0.02 {
+            port.send(&DevicePose { place, ..DevicePose::default() });
+            simulation.advance(1).unwrap();
+            last = port.touch();
+            if last.sequence == seen {
+                continue;
+            }
+            seen = last.sequence;
+            let reading = simulation.tool("tip").unwrap();
+            // nothing else is felt
+            near(run.name, last.force.distance(reading.suction), 0.0, reading.suction.length(), 1e-12);
+            near(run.name, last.torque.distance(reading.torque), 0.0, 0.002 * reading.suction.length(), 1e-12);
+            assert!(last.in_contact && last.force.z < -5e-3 && last.normal.z < -0.9, "{}: {last:?}", run.name);
+        }
+        // Δp π r² is 12.6 mN
+        assert!(seen > 15 && last.place.z < place.z - 3e-5, "{}: {last:?}", run.name);
+    }
+}
+
 /// A proxy at rest: the spring's force is what it feels, and hand and tissue are two springs in series.
 #[test]
 #[ignore = "long"]

@@ -229,3 +229,34 @@ fn what_a_tool_feels_at_rest_stands_in_the_first_row() {
         near(run.name, off, 0.0, then.force.length(), 1e-3);
     }
 }
+
+/// A block glued to another and a thread to a third: what they bear at rest is told before the first step.
+#[test]
+fn what_glue_and_threads_bear_at_rest_stands_in_the_first_row() {
+    let text = "(duration: 0.2, start: Equilibrium(),
+        bodies: {
+            \"a\": (mesh: Box(size: (0.01, 0.01, 0.01), cells: (3, 3, 3), elements: Hex8), material: \"m\"),
+            \"b\": (mesh: Box(size: (0.01, 0.01, 0.01), cells: (3, 3, 3), elements: Hex8), translate: (0.012, 0, 0),
+                material: \"m\"),
+            \"c\": (mesh: Box(size: (0.006, 0.006, 0.006), cells: (3, 3, 3), elements: Hex8),
+                translate: (0.002, 0.002, 0.01), material: \"m\")},
+        materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.4))},
+        constraints: [Fixed(body: \"a\", on: Plane(normal: (0, 0, 1), at: 0)),
+            Fixed(body: \"b\", on: Plane(normal: (0, 0, 1), at: 0))],
+        loads: [Gravity(acceleration: (2, 0, -9.81))],
+        attachments: [Glue(name: \"g\", bodies: (\"c\", \"a\")), Suture(name: \"s\", stiffness: 10, tighten: 1e-3,
+            from: (body: \"a\", at: (0.01, 0.005, 0.005)), to: (body: \"b\", at: (0.012, 0.005, 0.005)))])";
+    for run in cpu_and_long_gpu() {
+        let mut simulation = run.start(text);
+        let readings = |simulation: &mut Simulation| ["g", "s"].map(|name| simulation.attachment(name).unwrap());
+        let first = readings(&mut simulation);
+        simulation.advance(2).unwrap();
+        for (first, then) in first.iter().zip(&readings(&mut simulation)) {
+            // the weight of .216 g is 2.1 mN
+            assert!(first.force.length() > 1e-3 && first.holds == then.holds, "{}: {first:?}, {then:?}", run.name);
+            near(run.name, first.force.distance(then.force), 0.0, then.force.length(), run.bound(1e-2, 5e-2));
+            near(run.name, first.length, then.length, 2e-3, 1e-3);
+            near(run.name, first.energy, then.energy, 4e-7, 1e-2);
+        }
+    }
+}

@@ -4,7 +4,7 @@
 //! counted to (ωΔt)²/12 with Δt = 1e-3 s and ω < 30/s. An island falls with g: Σ m v grows by Σ m g Δt a step, to
 //! rounding (1e-10, 1e-4 in f32).
 
-use crate::columns::{external_forces, masses, velocities};
+use crate::columns::{external_forces, inertia, masses, velocities};
 use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, near};
 use crate::element_turns::with_elements;
 use glam::DVec3;
@@ -129,6 +129,42 @@ fn island_falls_with_exactly_g_and_mass_is_booked() {
         let summary = simulation.summary("").unwrap();
         near(&format!("{what}: mass removed"), summary.removed_mass, 2000.0, 2000.0, 1e-6);
         assert_eq!(summary.removed_elements, 2 * a_cell(elements));
+    }
+}
+
+/// Where mass is scaled, what resists acceleration goes with its elements, whose mass and what was added to it, and not
+/// with the next check of the stable step.
+#[test]
+fn scaled_mass_goes_with_its_elements() {
+    for run in cpu_and_long_gpu() {
+        for (gone, cut) in [("min: (0.02, 0, 0), max: (0.04", 0.02), ("min: (0, 0, 0), max: (0.01", 0.01)] {
+            let mut simulation = run.start(&format!(
+                "(duration: 0.01, integration: (step: 3e-5, when_unstable: ScaleMass(most: 0.1)),
+                bodies: {{\"b\": (mesh: Box(size: (0.04, 0.01, 0.01), cells: (4, 1, 1), elements: Hex8),
+                    material: \"soft\", regions: [(on: Box(min: (0, 0, 0), max: (0.01, 0.01, 0.01)), material: \"stiff\")])}},
+                materials: {{\"soft\": (density: 1000, neo_hookean: Young(young: 5e3, poisson: 0.3)),
+                    \"stiff\": (density: 1000, neo_hookean: Young(young: 4e7, poisson: 0.3))}},
+                loads: [Gravity(acceleration: (0, 0, -10))],
+                removal: [(on: Box({gone}, 0.01, 0.01)), when: At(3e-3))])"
+            ));
+            let added = |simulation: &mut Simulation| -> Vec<f64> {
+                let (mass, inertia) = (masses(simulation, "b"), inertia(simulation, "b"));
+                mass.iter().zip(&inertia).map(|(mass, inertia)| inertia - mass).collect()
+            };
+            let rest = simulation.rest_positions("b").unwrap();
+            let before = added(&mut simulation);
+            simulation.advance(100).unwrap();
+            let (after, masses) = (added(&mut simulation), masses(&mut simulation, "b"));
+            for (node, place) in rest.iter().enumerate() {
+                let what = format!("{}, cut at {cut} m, node {node}", run.name);
+                let stays = if cut > 0.015 && place.x < 0.015 { before[node] } else { 0.0 };
+                // a quarter of an element's gram
+                near(&what, after[node], stays, 2.5e-4, run.bound(1e-12, 1e-6));
+                let gone = if cut > 0.015 { place.x > 0.025 } else { place.x < 0.005 };
+                assert_eq!(masses[node] == 0.0, gone, "{what}");
+            }
+            assert!(before.iter().any(|added| *added > 1e-6), "{}: nothing was added", run.name);
+        }
     }
 }
 

@@ -56,6 +56,65 @@ fn a_closed_mouth_pulls_by_pressure_times_area() {
     }
 }
 
+/// Whatever faces are in the mouth, larger ones than itself, too: it is closed.
+#[test]
+fn the_pull_does_not_ask_how_fine_faces_are() {
+    let bore = 3e-3;
+    for run in cpu_and_long_gpu() {
+        for elements in ["Hex8", "Tet4", "Wedge6", "Tet10"] {
+            for (cells, shift) in [1, 3, 4, 6, 10, 30].into_iter().flat_map(|cells| [0.0, 1.5e-3].map(|by| (cells, by)))
+            {
+                let scene = format!(
+                    "(duration: 0.01, bodies: {{\"b\": (mesh: Box(size: (0.03, 0.03, 0.005), cells: ({cells}, {cells}, 1),
+                        elements: {elements}), material: \"m\")}}, constraints: [Fixed(on: All)],
+                    materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e5, poisson: 0.3))}},
+                    tools: {{\"tip\": (shape: Tube(length: 0.03, inner: {bore}, outer: 4e-3), at: ({}, 0.0147, 0.007),
+                        rotation: (10, 0, 0))}},
+                    suction: [(tool: \"tip\", pressure: {PRESSURE}, reach: 3e-3)])",
+                    0.015 + shift
+                );
+                let mut simulation = run.start(&scene);
+                simulation.advance(2).unwrap();
+                let pull = -simulation.tool("tip").unwrap().suction.z;
+                let what = format!("{}, {elements}, {cells} cells, {shift} m", run.name);
+                // seen along the axis the mouth is closed; faces are as much larger as they lie aslant
+                let expected = PRESSURE * PI * bore * bore / 10.0_f64.to_radians().cos();
+                near(&what, pull, expected, expected, run.bound(1e-6, 1e-4));
+            }
+        }
+    }
+}
+
+/// Areas are found from places on the face: a thousand metres from the origin they have all their digits.
+#[test]
+fn far_away_tools_suck_and_pressures_push_as_near() {
+    for run in cpu_and_long_gpu() {
+        let of = |away: f64| {
+            let mut simulation = run.start(&format!(
+                "(duration: 0.01, bodies: {{\"b\": (mesh: Box(size: (0.02, 0.02, 0.004), cells: (7, 7, 2), elements: Tet4),
+                    material: \"m\", rotate: (0, 20, 30), translate: ({away}, {}, {}))}},
+                constraints: [Fixed(on: All)], loads: [Pressure(on: Surface(), pressure: 100)],
+                materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e5, poisson: 0.3))}},
+                tools: {{\"tip\": (shape: Tube(length: 0.03, inner: 6e-3, outer: 8e-3), at: ({}, {}, {}))}},
+                suction: [(tool: \"tip\", pressure: {PRESSURE}, reach: 9e-3)],
+                probes: {{\"held\": (what: Reaction, on: All), \"one\": (what: Reaction, on: Nodes([0, 5, 17]))}})",
+                -away,
+                0.5 * away,
+                away + 0.009,
+                -away + 0.013,
+                0.5 * away + 0.004
+            ));
+            simulation.advance(2).unwrap();
+            let felt = simulation.tool("tip").unwrap().force.to_array();
+            [felt.to_vec(), simulation.probe("held").unwrap(), simulation.probe("one").unwrap()].concat()
+        };
+        let (near_by, far) = (of(0.0), of(1000.0));
+        for (a, b) in near_by.iter().zip(&far) {
+            near(run.name, *b, *a, near_by[2], run.bound(1e-9, 1e-5));
+        }
+    }
+}
+
 /// Faces of the far side are turned away from the mouth: a reach through all of the plate sucks no more and no less.
 #[test]
 fn what_is_behind_the_tissue_is_not_sucked() {
@@ -221,5 +280,83 @@ fn a_mouth_that_two_bodies_close_is_closed() {
         let two = pulled(&run, &[(-0.01, 0.01), (0.0, 0.01)]);
         near(&format!("{}: one", run.name), one, PRESSURE * PI * BORE * BORE, PRESSURE * PI * BORE * BORE, 0.03);
         near(&format!("{}: two", run.name), two, one, one, 1e-2);
+    }
+}
+
+/// What is behind tissue that closes a mouth is not sucked: the floor of a cavity that removal makes under a roof, and
+/// a second body; both look at the mouth and are in reach.
+#[test]
+fn what_is_hidden_behind_others_is_not_sucked() {
+    let slab = |name: &str, z: f64| {
+        format!(
+            "\"{name}\": (mesh: Box(size: (0.03, 0.03, 0.002), cells: (12, 12, 2), elements: Hex8MeanDilatation),
+                material: \"t\", translate: (0, 0, {z}))"
+        )
+    };
+    let scene = |bodies: &str, fixed: &str, sucks: &str| {
+        format!(
+            "(duration: 0.06, bodies: {{{bodies}}},
+            materials: {{\"t\": (density: 1000, neo_hookean: Young(young: 2e5, poisson: 0.4), damping: 200)}},
+            constraints: [{fixed}],
+            tools: {{\"g\": (shape: Tube(length: 0.05, inner: 0.005, outer: 0.006), at: (0.0152, 0.0148, 0.0061))}},
+            {sucks} probes: {{\"f\": (what: ToolForce(tool: \"g\"))}})"
+        )
+    };
+    let sides = |body: &str| format!("Fixed(body: \"{body}\", on: Or([Set(\"z0\"), Set(\"x0\"), Set(\"x1\")]))");
+    let block = "\"b\": (mesh: Box(size: (0.03, 0.03, 0.006), cells: (12, 12, 6), elements: Hex8MeanDilatation), material: \"t\")";
+    let cavity = scene(
+        block,
+        &sides("b"),
+        "removal: [(on: Box(min: (0.005, -1, 0.0039), max: (0.025, 1, 0.0051)), when: At(0.03))],
+            suction: [(tool: \"g\", pressure: 200, reach: 0.004)],",
+    );
+    let two = scene(
+        &format!("{}, {}", slab("low", 0.0), slab("high", 0.004)),
+        &format!("{}, {}", sides("low"), sides("high")),
+        "suction: [(tool: \"g\", body: \"low\", pressure: 200, reach: 0.005),
+            (tool: \"g\", body: \"high\", pressure: 200, reach: 0.005)],",
+    );
+    let closed = 200.0 * PI * 0.005 * 0.005;
+    for run in configurations() {
+        for (what, text) in [("cavity", &cavity), ("two bodies", &two)] {
+            let mut simulation = run.start(text);
+            for time in [0.025, 0.06] {
+                simulation.advance_to(time).unwrap();
+                let felt = -simulation.probe("f").unwrap()[2];
+                near(&format!("{}, {what}, {time} s", run.name), felt, closed, closed, 1e-3);
+            }
+        }
+    }
+}
+
+/// A mouth half beside a block, whose wall there goes along the axis or leans by a twentieth of a degree either way: it
+/// closes nothing of the mouth, and is hardly pulled at.
+#[test]
+fn a_wall_along_the_axis_is_not_sucked_however_it_leans() {
+    let half = 0.5_f64.powi(3) * 200.0 * PI * 0.005 * 0.005;
+    let scene = |lean: f64| {
+        format!(
+            "(duration: 0.2, bodies: {{\"b\": (mesh: Hexahedron(corners: (({lean}, 0, 0), (0.04, 0, 0), (0.04, 0.04, 0),
+                ({lean}, 0.04, 0), (0, 0, 0.02), (0.04, 0, 0.02), (0.04, 0.04, 0.02), (0, 0.04, 0.02)), cells: (8, 8, 4),
+                elements: Hex8MeanDilatation), material: \"t\")}},
+            materials: {{\"t\": (density: 1000, neo_hookean: Young(young: 2e5, poisson: 0.4), damping: 60)}},
+            constraints: [Fixed(on: Set(\"z0\"))],
+            tools: {{\"g\": (shape: Tube(length: 0.05, inner: 0.005, outer: 0.006), at: (0, 0.0193, 0.0201))}},
+            suction: [(tool: \"g\", pressure: 200, reach: 0.003, curve: Smooth(end: 0.1))],
+            probes: {{\"f\": (what: ToolForce(tool: \"g\"))}})"
+        )
+    };
+    for run in configurations() {
+        for lean in [-2e-5, 0.0, 2e-5] {
+            let mut simulation = run.start(&scene(lean));
+            let mut aside = 0.0_f64;
+            while simulation.time() < 0.2 {
+                simulation.advance(20).unwrap();
+                aside = aside.max(simulation.probe("f").unwrap()[0].abs());
+            }
+            let what = format!("{}, leaning by {lean} m", run.name);
+            near(&format!("{what}: along the axis"), -simulation.probe("f").unwrap()[2], half, half, 0.02);
+            near(&format!("{what}: aside"), aside, 0.0, half, 0.03);
+        }
     }
 }

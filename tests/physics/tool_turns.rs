@@ -2,8 +2,8 @@
 
 use crate::configurations::{configurations, near, scene_of};
 use glam::{DMat3, DQuat, DVec3};
-use sinew::SceneFile;
 use sinew::assembly::motion;
+use sinew::{SceneFile, Simulation};
 use std::path::Path;
 
 /// A ball beside a block, which it does not reach, and what its probes tell.
@@ -104,4 +104,31 @@ fn a_path_turns_as_far_as_its_places_say() {
         [DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2), DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2)];
     let found = turned(&file(&format!("({})", scene(text, 0.1))), "k", 0.5);
     assert!(found.abs_diff_eq(DMat3::from_quat(from.slerp(to, 0.5)), 1e-12), "{found}");
+}
+
+/// A tool that is there to be seen alone is where its path takes it, for probes and readings.
+#[test]
+fn a_tool_that_nothing_touches_is_where_it_is() {
+    for run in configurations() {
+        let mut simulation = run.start(
+            "(duration: 0.02, bodies: {\"b\": (mesh: Box(size: (0.01, 0.01, 0.01), cells: (2, 2, 2)), material: \"m\")},
+            materials: {\"m\": (density: 1000, neo_hookean: Young(young: 5e4, poisson: 0.3))},
+            tools: {\"t\": (shape: Sphere(radius: 0.008), at: (0.1, 0.2, 0.3),
+                moves: [(displacement: (0, 0, 0.04), curve: Ramp(end: 0.02))])},
+            probes: {\"place\": (what: ToolPlace(tool: \"t\")), \"pose\": (what: ToolPose(tool: \"t\")),
+                \"velocity\": (what: ToolVelocity(tool: \"t\"))})",
+        );
+        simulation.advance_to(0.01).unwrap();
+        let at = DVec3::new(0.1, 0.2, 0.3 + 2.0 * simulation.time());
+        let of = |simulation: &mut Simulation, name: &str| DVec3::from_slice(&simulation.probe(name).unwrap()[..3]);
+        for (what, found) in [
+            ("place", of(&mut simulation, "place")),
+            ("pose", of(&mut simulation, "pose")),
+            ("reading", simulation.tool("t").unwrap().place),
+        ] {
+            near(&format!("{}: {what}", run.name), found.distance(at), 0.0, 0.1, 1e-9);
+        }
+        let velocity = of(&mut simulation, "velocity");
+        near(&format!("{}: velocity", run.name), velocity.distance(DVec3::Z * 2.0), 0.0, 2.0, 1e-9);
+    }
 }

@@ -122,11 +122,36 @@ fn what_is_wrong_with_glue_is_told_where_it_stands() {
             "5: error: nothing of `b` is near `b`: nothing is glued | the nearest node is 1.000e-1 m off",
         ),
         (
+            "Glue(bodies: (\"b\", \"b\"), on: Surface(normal: (0, 0, 1)))",
+            "5: error: nothing of `b` is near `b`: nothing is glued | the nearest node is 1.768e-2 m off, and `reach` \
+             is 2.845e-3 m | faces of `b` do not count that are joined to a node along the surface within 2.845e-3 m \
+             of it",
+        ),
+        (
             &format!("Glue(bodies: (\"b\", \"b\"), {faces}, normal: 0)"),
             "5: error: `normal` must be above 0, found 0 Pa",
         ),
         (&format!("Glue(bodies: (\"b\", \"b\"), {faces}, sweeps: 0)"), "5: error: `sweeps` must be from 1 to 100"),
     ]);
+}
+
+/// What touches at rest is apart where it starts.
+#[test]
+fn what_starts_apart_is_not_glued() {
+    let block = |more: &str| {
+        format!("(mesh: Box(size: (0.01, 0.01, 0.01), cells: (3, 3, 3)), material: \"m\", translate: {more})")
+    };
+    let text = format!(
+        "(duration: 0.02, bodies: {{\"a\": {}, \"b\": {}}},
+materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 5e3, poisson: 0.3))}},
+attachments: [Glue(bodies: (\"a\", \"b\"))])",
+        block("(0, 0, 0)"),
+        block("(0, 0, 0.01), start: Affine(gradient: ((0, 0, 0), (0, 0, 0), (0, 0, -0.05)), center: (0, 0, 0.02))"),
+    );
+    let found = told_of(&text, std::path::Path::new("."));
+    let wanted = "3: error: nothing of `a` is near `b`: nothing is glued | the nearest node is 5.000e-4 m off, and \
+                  `reach` is 3.794e-4 m | it counts where bodies are at the start, which their `start` tells";
+    assert!(found.contains(wanted), "{found}");
 }
 
 /// Which of the copies would it be?

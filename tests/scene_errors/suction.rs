@@ -8,7 +8,7 @@ fn what_is_wrong_with_what_a_tool_takes_and_sucks_is_told() {
     let takes = |fields: &str| format!("removal: [(when: InTool({fields}))],");
     let sucks = |fields: &str| format!("suction: [({fields})],");
     let good = "tool: \"rod\", reach: 0.1, rate: 1e-6";
-    let mouth = "tool: \"rod\", reach: 0.1, pressure: 100, bore: 0.01";
+    let mouth = "tool: \"rod\", reach: 0.1, pressure: 100, bore: 0.02";
     let passes = |threshold: &str| takes(&format!("tool: \"rod\", reach: 0.1, threshold: {threshold}"));
     for good in [takes(good), takes(&format!("{good}, crumb: 0")), passes("StretchAbove(1.2)"), sucks(mouth)] {
         assert_eq!(told(ROD, TOUCH, &good), "");
@@ -46,6 +46,10 @@ fn what_is_wrong_with_what_a_tool_takes_and_sucks_is_told() {
         (
             sucks("tool: \"rod\", reach: 0.1, pressure: 4e3, bore: 0.01"),
             "3: warning: the suction of 4.000e3 Pa is more than",
+        ),
+        (
+            sucks("tool: \"rod\", reach: 0.1, pressure: 100, bore: 0.005"),
+            "3: warning: the mouth is 1.000e-2 m across, and edges of the surface that it sucks are 2.845e-2 m long",
         ),
         (format!("analysis: Static(), {}", sucks(mouth)), "3: error: a static analysis cannot suck"),
         (format!("analysis: Static(), {}", takes(good)), "3: error: a static analysis cannot remove elements"),
@@ -99,7 +103,7 @@ fn what_copies_would_share_is_refused() {
 #[test]
 fn suction_that_has_begun_before_the_first_step_is_refused() {
     let sucks = |curve: &str| {
-        let entry = format!("(tool: \"rod\", pressure: 100, bore: 0.01, reach: 0.02{curve})");
+        let entry = format!("(tool: \"rod\", pressure: 100, bore: 0.02, reach: 0.02{curve})");
         told(
             ROD,
             TOUCH,

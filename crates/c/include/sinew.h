@@ -431,7 +431,7 @@ typedef struct {
      */
     double velocity[3];
     /**
-     * The force on it, the mean over the batch (N).
+     * The force on it, the mean over the batch (N); of what it sucks that of the batch's last step.
      */
     double force[3];
     /**
@@ -439,7 +439,7 @@ typedef struct {
      */
     double torque[3];
     /**
-     * The direction of the force; 0 where the tool touches nothing.
+     * The direction of the force; 0 where the tool feels nothing.
      */
     double normal[3];
     /**
@@ -455,7 +455,7 @@ typedef struct {
      */
     uint64_t answers;
     /**
-     * 1 if it touched anything during the batch.
+     * 1 if it touched or held anything during the batch, or sucks at something at its end.
      */
     int32_t in_contact;
     /**
@@ -564,6 +564,10 @@ typedef struct {
      * What of it impact, friction and catching nodes have taken (J).
      */
     double loss;
+    /**
+     * How many nodes slipped out of its grasps when these were closed last.
+     */
+    uint64_t slipped;
 } SinewTool;
 
 /**

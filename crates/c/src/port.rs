@@ -65,11 +65,11 @@ pub struct SinewTouch {
     pub orientation: [f64; 4],
     /// How fast it went (m/s).
     pub velocity: [f64; 3],
-    /// The force on it, the mean over the batch (N).
+    /// The force on it, the mean over the batch (N); of what it sucks that of the batch's last step.
     pub force: [f64; 3],
     /// The moment of that force about the tool's origin (N m).
     pub torque: [f64; 3],
-    /// The direction of the force; 0 where the tool touches nothing.
+    /// The direction of the force; 0 where the tool feels nothing.
     pub normal: [f64; 3],
     /// Stiffness along the normal (N/m).
     pub stiffness: f64,
@@ -77,7 +77,7 @@ pub struct SinewTouch {
     pub real_time_factor: f64,
     /// The number of the pose that the batch went to; 0 where none had come.
     pub answers: u64,
-    /// 1 if it touched anything during the batch.
+    /// 1 if it touched or held anything during the batch, or sucks at something at its end.
     pub in_contact: i32,
     /// 0.
     pub reserved: i32,

@@ -27,6 +27,8 @@ pub struct SinewTool {
     pub work: f64,
     /// What of it impact, friction and catching nodes have taken (J).
     pub loss: f64,
+    /// How many nodes slipped out of its grasps when these were closed last.
+    pub slipped: u64,
 }
 
 // SAFETY: it is repr(C), begins with its size, and has numbers only
@@ -55,6 +57,7 @@ pub unsafe extern "C" fn sinew_tool(
             penetration: felt.penetration,
             work: felt.work,
             loss: felt.loss,
+            slipped: felt.slipped as u64,
         };
         write(tool, told, "tool")
     })

@@ -272,8 +272,12 @@ fn tools(summary: &Summary, page: &mut Page) {
         };
         let (work, loss) = (quantity(reading.work, "J"), taken(reading.loss));
         let nodes = counted(reading.nodes as u64, "node");
+        let slipped = match reading.slipped {
+            0 => String::new(),
+            count => format!(", {} slipped out", counted(count as u64, "node")),
+        };
         let but = if reading.suction.length() > 0.0 { ", the work of what it sucks left out" } else { "" };
-        format!("{name} feels ({x}, {y}, {z}) of {nodes}{inside}{sucks}; it did {work}{but}, {loss}")
+        format!("{name} feels ({x}, {y}, {z}) of {nodes}{slipped}{inside}{sucks}; it did {work}{but}, {loss}")
     });
     page.rows("tools", lines.collect::<Vec<_>>());
 }

@@ -15,7 +15,7 @@ pub use element_kernel::{BlockColumns, InsidePatch, PatchInterior, kernel_effect
 pub use guard_kernel::{BlockSums, GuardColumns, run_guard};
 pub use law::BlockLaw;
 pub use law_copies::{LawCopies, LawParameters, PerCopyLaw};
-pub(crate) use node_kernel::{Asked, ROWS_A_CHUNK};
+pub(crate) use node_kernel::{Asked, Met, ROWS_A_CHUNK};
 pub use node_kernel::{
     Declared, Foreseen, IntegrationCoefficients, NodeColumns, NodeShare, OwnRows, Touches, Undeclared, move_nodes,
 };

@@ -9,6 +9,7 @@ mod own_rows;
 pub(crate) use declared::Asked;
 pub use declared::{Declared, Undeclared};
 pub use foreseen::Foreseen;
+pub(crate) use node_columns::Met;
 pub use node_columns::{NodeColumns, Touches};
 pub use own_rows::{NodeShare, OwnRows};
 

@@ -13,12 +13,12 @@ pub(in crate::contact) fn by_shortlist(
     let mut same = *short;
     let [mut chosen, mut seen] = [Faced::NOTHING; 2];
     let kept = (&mut chosen, &mut Kept::default());
-    surfaces.faced((now, point), listed, (reach, 1.0), (&mut same, Stays::default()), kept);
+    surfaces.faced((now, point), listed, (reach, |_| 1.0), (&mut same, Stays::default()), kept);
     // with normals that are known, and with those that are asked for
     let mut is_all = [now.normals, &[][..]].into_iter().map(|normals| {
         let of = (Placed { normals, ..now }, point, short);
         let seen = (&mut seen, &mut Own::default());
-        surfaces.faced_at_a_glance(of, (listed.nearer, reach, 1.0), seen)
+        surfaces.faced_at_a_glance(of, (listed.nearer, reach, |_| 1.0), seen)
     });
     let is_all = is_all.all(|is_all| is_all);
     assert!(!is_all || seen == chosen, "{seen:?}, {chosen:?}");
@@ -41,7 +41,7 @@ pub(in crate::contact) fn faced(
     let (mut short, mut found) = (Shortlist::UNKNOWN, Faced::NOTHING);
     let stays = Stays { moved: 1e-3, reach: 1e-3 };
     let kept = (&mut found, &mut Kept::default());
-    surfaces.faced((now, point), listed, (&reach, 1.0), (&mut short, stays), kept);
+    surfaces.faced((now, point), listed, (&reach, |_| 1.0), (&mut short, stays), kept);
     // what the shortlist leaves out changes nothing
     assert_eq!(by_shortlist(surfaces, (now, point), listed, &reach, &short).0, found);
     found
@@ -171,7 +171,7 @@ fn beside_rims_and_at_rims_a_glance_tells() {
             let (mut short, mut found) = (Shortlist::UNKNOWN, Faced::NOTHING);
             let stays = Stays { moved: 1e-3, reach: 1e-3 };
             let kept = (&mut found, &mut Kept::default());
-            surfaces.faced((now, &point), listed, (|_| 0.05, 1.0), (&mut short, stays), kept);
+            surfaces.faced((now, &point), listed, (|_| 0.05, |_| 1.0), (&mut short, stays), kept);
             if !short.is_known() {
                 continue;
             }

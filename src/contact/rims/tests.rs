@@ -4,10 +4,12 @@ use super::super::facing::tests::faced;
 use crate::contact::{Point, Surfaces};
 use glam::DVec3;
 
-/// A cube of edges of one metre whose lower face is at height 0 and whose front wall at x = 1, and a small triangle of
-/// another body with its first corner at a place, whose normal is given.
-fn before_cube(at: DVec3, own: DVec3) -> (Surfaces, Vec<DVec3>) {
-    let corner = |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2));
+/// A cube of edges of one metre whose lower face is at height 0 and whose front wall at x = 1, leaning forwards by so
+/// much a metre of height, and a small triangle of another body with its first corner at a place, whose normal is
+/// given.
+fn before_cube(at: DVec3, own: DVec3, leans: f64) -> (Surfaces, Vec<DVec3>) {
+    let straight = |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2));
+    let corner = |i: u32| straight(i) + leans * straight(i).z * DVec3::X;
     let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let cut = sides.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
     let triangles: Vec<[u32; 3]> = cut.chain([[8, 9, 10]]).collect();
@@ -19,7 +21,11 @@ fn before_cube(at: DVec3, own: DVec3) -> (Surfaces, Vec<DVec3>) {
 /// What the first corner of the triangle faces: normal and gap (m) of the face in its way, what each corner of that has
 /// of the place below it, and whether there is another.
 fn sees(at: [f64; 3], own: DVec3) -> Option<(DVec3, f64, DVec3, bool)> {
-    let (surfaces, places) = before_cube(DVec3::from(at), own);
+    sees_leaning(at, own, 0.0)
+}
+
+fn sees_leaning(at: [f64; 3], own: DVec3, leans: f64) -> Option<(DVec3, f64, DVec3, bool)> {
+    let (surfaces, places) = before_cube(DVec3::from(at), own, leans);
     let point = Point { triangle: Some(12), ..Point::node(1, 8) };
     let all: Vec<u32> = (0..12).collect();
     let found = faced(&surfaces, &places, &point, &all, |_| 0.2);
@@ -64,4 +70,22 @@ fn what_is_well_above_the_rim_or_faces_the_wall_meets_it() {
     let diagonal = DVec3::new(1.0, 0.0, -1.0).normalize();
     let (normal, gap, ..) = sees([1.01, 0.3, -0.01], -diagonal).expect("it faces the rim");
     assert!((normal - diagonal).length() < 1e-12 && (gap - 0.01 * 2_f64.sqrt()).abs() < 1e-12, "{normal} {gap}");
+}
+
+/// Of a wall that leans forwards what is in the body, as high as its lower rim, has the wall's plane before it beyond
+/// the rim: it is in the body all the same, and is held by the wall. What the lower face sees is beyond.
+#[test]
+fn what_is_in_the_body_at_the_rim_of_a_leaning_wall_is_held() {
+    for (y, leans) in [0.013, 0.3, 0.987].into_iter().flat_map(|y| [0.1, 0.3, 0.5].map(|leans| (y, leans))) {
+        let normal = DVec3::new(1.0, 0.0, -leans).normalize();
+        for (behind, above) in [(1e-3, 0.0), (0.02, 0.0), (0.04, 0.0), (0.02, 1e-4), (0.02, -5e-4)] {
+            let what = format!("{y}, {leans}, {behind}, {above}");
+            let (faced, gap, borne, _) = sees_leaning([1.0 - behind, y, above], DVec3::NEG_X, leans).expect(&what);
+            let at = DVec3::new(1.0 - behind, y, above);
+            let expected = (at - DVec3::X).dot(normal);
+            assert!((faced - normal).length() < 1e-12 && (gap - expected).abs() < 1e-12, "{what}: {faced}, {gap}");
+            assert!(borne.distance(at - gap * normal) < 1e-12, "{what}: {borne}");
+        }
+        assert_eq!(sees_leaning([0.98, y, -0.01], DVec3::NEG_X, leans), None, "{y}, {leans}");
+    }
 }

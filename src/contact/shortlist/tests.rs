@@ -42,7 +42,7 @@ fn faced(
         return by_shortlist(surfaces, (now, &point), listed, &|_| 0.1, short);
     }
     let mut found = Faced::NOTHING;
-    surfaces.faced((now, &point), listed, (|_| 0.1, 1.0), (short, stays), (&mut found, &mut Kept::default()));
+    surfaces.faced((now, &point), listed, (|_| 0.1, |_| 1.0), (short, stays), (&mut found, &mut Kept::default()));
     (found, false)
 }
 

@@ -107,7 +107,7 @@ fn holds(world: &World, pair: &Pair, row: u32) -> bool {
     let Ok(place) = grasps.rows.binary_search(&row) else { return false };
     let of = |number: usize| hold.get(grasps.numbers() * place + grasps.numbers_a_grasp() * number + 3);
     let mut others = grasps.grasps.iter().enumerate().filter(|(_, grasp)| grasp.tool.tool != pair.tool);
-    others.any(|(number, _)| of(number) == 1.0)
+    others.any(|(number, _)| of(number) == ToolHold::HELD)
 }
 
 fn message(Pair { tool, edge, .. }: &Pair, body: &Placed<'_>, (at, element): (DVec3, usize)) -> String {

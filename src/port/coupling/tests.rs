@@ -89,12 +89,27 @@ fn when_no_touch_comes_any_more_the_force_decays_without_a_jump() {
     assert!((forces[2900] + DVec3::Y * 2.0).length() < 3e-3, "{}", forces[2900]);
 }
 
+/// A device's clock may have gone for a day: the first touch comes by the slew, as where it begins with 0.
+#[test]
+fn a_clock_that_begins_late_lets_nothing_jump() {
+    let touch = Touch { sequence: 5, place: DVec3::X * 0.05, ..Touch::default() };
+    for begins in [0.0, 1e5] {
+        let mut coupling = VirtualCoupling::new(400.0, 0.0, 3.0);
+        let force = |tick: u32| coupling.force(&touch, DVec3::ZERO, DVec3::ZERO, begins + f64::from(tick) * TICK).x;
+        for (tick, force) in (1..5).map(force).enumerate() {
+            assert!((force - 0.4 * tick as f64).abs() < 1e-6, "from {begins} s: {force} N in tick {tick}");
+        }
+    }
+}
+
 #[test]
 fn a_device_gets_numbers_whatever_comes() {
     let mut coupling = VirtualCoupling::new(500.0, 0.5, 2.0);
-    for (place, touched) in [(f64::NAN, 1.0), (0.0, f64::INFINITY), (f64::MAX, -f64::MAX)] {
+    for (time, (place, touched)) in
+        (0..).zip([(f64::NAN, 1.0), (0.0, f64::INFINITY), (f64::MAX, -f64::MAX), (f64::NAN, 1.0), (0.0, f64::MAX)])
+    {
         let touch = Touch { sequence: 1, place: DVec3::splat(touched), ..Touch::default() };
-        let force = coupling.force(&touch, DVec3::splat(place), DVec3::ZERO, 1.0);
+        let force = coupling.force(&touch, DVec3::splat(place), DVec3::ZERO, f64::from(time));
         assert!(force.is_finite() && force.length() <= 2.0 + 1e-9, "{force}");
     }
 }

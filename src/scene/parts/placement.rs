@@ -1,5 +1,6 @@
 //! Where a part stands: what becomes of each thing in it that has a place, a length or a direction.
 
+use crate::math::{degrees, turned};
 use crate::mesh::{angles_about_axes, rotation_about_axes};
 use crate::scene::schema::{
     Attachment, Axis, Body, Constraint, Contact, Direction, Free, Load, LoadPartsMut, Material, Part, Probe, Quantity,
@@ -63,11 +64,7 @@ impl Placement {
     /// Axis times angle (degrees) of how something is turned; not of how it turns, which is a direction.
     fn pose(&self, value: &mut DVec3) {
         if let Some(turn) = self.turn {
-            let turned = DQuat::from_mat3(&turn) * DQuat::from_scaled_axis(*value * std::f64::consts::PI / 180.0);
-            let axis = DVec3::new(turned.x, turned.y, turned.z);
-            let sine = axis.length();
-            let angle = 2.0 * sine.atan2(turned.w);
-            *value = if sine == 0.0 { DVec3::ZERO } else { axis / sine * angle.to_degrees() };
+            *value = degrees(DQuat::from_mat3(&turn) * turned(*value));
         }
     }
 

@@ -213,6 +213,15 @@ impl Default for EnergyGuard {
 }
 
 impl Scene {
+    /// Whether anything of the scene is done with a tool.
+    pub(crate) fn uses(&self, tool: &str) -> bool {
+        let touches = |contact: &Contact| matches!(contact, Contact::Tool { tool: of, .. } if of == tool);
+        self.contacts.iter().any(touches)
+            || self.removal.iter().any(|removal| removal.when.tool().is_some_and(|of| of == tool))
+            || self.suction.iter().any(|suction| suction.tool == tool)
+            || self.attachments.iter().any(|attachment| attachment.tool().is_some_and(|of| of == tool))
+    }
+
     /// Time between outputs of fields (s).
     pub fn fields_every(&self) -> f64 {
         let whole = if self.is_static() { self.duration } else { self.duration / 20.0 };

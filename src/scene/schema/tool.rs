@@ -123,7 +123,8 @@ pub struct ToolMesh {
     /// What its coordinates are multiplied with: 0.001 where they are in mm.
     #[serde(default = "one")]
     pub scale: f64,
-    /// Distance between the places at which its distance is known (m); a 64th of its longest side when left out.
+    /// Distance between the places at which its distance is known (m); when left out what 64³ places allow, at most a
+    /// 59th of its longest side.
     #[serde(default)]
     pub spacing: Option<f64>,
 }

@@ -3,13 +3,14 @@
 use super::geometry::{TOOLS, named_file};
 use super::names::body_named;
 use super::{Validator, scene, select, show};
+use crate::math::turned;
 use crate::scene::limits::{MOST_BURST, MOST_SWEEPS, MOST_TURNS, TOOLS_OF_A_BODY};
 use crate::scene::load::SceneFile;
 use crate::scene::schema::{Contact, ContactLaw, Follow, Port, Removal, Scene, Threshold, Tool, When};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use crate::tools::closest_approach;
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// How near a tool's origin may come to its pivot (m).
@@ -27,13 +28,7 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
         if let Some(found) = &found.port {
             port(scene_, validator, name, &path.name("port"), found);
         }
-        let touches = |contact: &Contact| matches!(contact, Contact::Tool { tool, .. } if tool == name);
-        let takes = |removal: &Removal| removal.when.tool() == Some(name);
-        if !scene_.contacts.iter().any(touches)
-            && !scene_.removal.iter().any(takes)
-            && !scene_.suction.iter().any(|suction| suction.tool == *name)
-            && !scene_.attachments.iter().any(|attachment| attachment.tool() == Some(name))
-        {
+        if !scene_.uses(name) {
             validator
                 .out
                 .warn_at(&path, format!("nothing touches the tool `{name}`"))
@@ -134,7 +129,7 @@ fn pivot(validator: &mut Validator, path: &Path, tool: &Tool, point: DVec3) {
         return;
     }
     for place in tool.places() {
-        let axis = DQuat::from_scaled_axis(place.rotation * (std::f64::consts::PI / 180.0)) * DVec3::Z;
+        let axis = turned(place.rotation) * DVec3::Z;
         let angle = axis.angle_between(point - place.at).to_degrees();
         if angle > MOST_TURNED {
             validator

@@ -4,6 +4,7 @@
 mod axes;
 mod by_parts;
 mod conjugate_gradients;
+mod contact_work;
 mod device;
 mod differences;
 mod equation;

@@ -3,6 +3,7 @@
 use super::super::ScheduledPass;
 use super::super::explain::SolverInUse;
 use super::axes::{Axes, Motion};
+use super::contact_work::TouchedBefore;
 use super::device::{bring_state, send_state};
 use super::formula::Formula;
 use super::grasped::Grasped;
@@ -216,9 +217,13 @@ fn keep_forces(trial: &mut Trial<'_>, h: f64, iterations: &mut Iterations) -> Re
         set_trying(trial.world, false);
         // forces that were no numbers are in them
         iterations.kept.put_memories_back(trial.world);
+        let touched = touches.then(|| TouchedBefore::read(trial.world));
         let Iterations { settings, motion, space: Workspace { correction, net, .. }, .. } = iterations;
         let place = Place { formula: &settings.formula, h, motion, correction, beyond: None };
         trial.noted_forces(&place, net)?;
+        if let Some(touched) = touched {
+            touched.count_work(trial.world, trial.axes, &place);
+        }
     }
     Ok(())
 }

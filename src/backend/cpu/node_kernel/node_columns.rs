@@ -3,7 +3,7 @@
 use super::declared::{Declared, Undeclared};
 use super::own_rows::OwnRows;
 use super::{Foreseen, IntegrationCoefficients};
-use crate::components::{GROUP_ROWS, WORK_NUMBERS};
+use crate::components::{GROUP_ROWS, MEETING_NUMBERS, WORK_NUMBERS};
 use crate::math::{Scalar, SimdScalar, vector_at};
 use glam::DVec3;
 use std::sync::atomic::AtomicU32;
@@ -53,6 +53,8 @@ pub struct NodeColumns<'a, T> {
     pub(crate) touches: Option<Touches<'a, T>>,
     /// What tools do to those that they may hold; none where none may.
     pub(crate) holds: Option<Touches<'a, T>>,
+    /// What others do to them; none where none may.
+    pub(crate) met: Option<Met<'a, T>>,
     /// What systems have for themselves.
     pub(crate) own: OwnRows<'a, T>,
 }
@@ -78,6 +80,25 @@ impl<'a, T> Touches<'a, T> {
 
     fn again(&mut self) -> Touches<'_, T> {
         Touches { rows: self.rows, values: &mut *self.values, numbers: self.numbers }
+    }
+}
+
+/// What contact between surfaces does to nodes.
+pub(crate) struct Met<'a, T> {
+    /// See [`ContactForce`](crate::components::ContactForce): three numbers a node (N).
+    pub force: &'a [T],
+    /// See [`SurfaceTouch`](crate::components::SurfaceTouch).
+    pub touch: &'a mut [T],
+}
+
+impl<'a, T> Met<'a, T> {
+    /// That of the first so many nodes.
+    fn take(&mut self, rows: usize) -> Self {
+        Met { force: first(&mut self.force, 3 * rows), touch: first_mut(&mut self.touch, MEETING_NUMBERS * rows) }
+    }
+
+    fn again(&mut self) -> Met<'_, T> {
+        Met { force: self.force, touch: &mut *self.touch }
     }
 }
 
@@ -110,6 +131,7 @@ impl<T: SimdScalar> NodeColumns<'_, T> {
                 previous_prescribed: &mut *self.previous_prescribed,
                 touches: self.touches.as_mut().map(Touches::again),
                 holds: self.holds.as_mut().map(Touches::again),
+                met: self.met.as_mut().map(Met::again),
                 own: self.own.again(),
             })
         })
@@ -127,12 +149,30 @@ impl<T: Scalar> NodeColumns<'_, T> {
         self.rest[row] + self.displacement(row)
     }
 
+    /// Displacement of one of these nodes (m), without what rounding has made of the sum of its steps: who corrects
+    /// steps by where nodes are would push by that, m ulp(u)/Δt². Among the columns of who asks is
+    /// [`DisplacementCompensation`](crate::components::DisplacementCompensation).
+    pub(crate) fn exact_displacement(&self, row: usize) -> DVec3 {
+        let left = self.compensation.as_ref().map_or(DVec3::ZERO, |[of_u, _]| vector_at(of_u, 3 * row));
+        self.displacement(row) - left
+    }
+
     /// Where `integrate` will take one of these nodes, from what its loads are by now.
     pub fn foresee(&self, coefficients: &IntegrationCoefficients<f64>, row: usize) -> Foreseen {
         let vector = |all: &[T]| vector_at(all, 3 * row);
         let force = self.external_force().map_or(DVec3::ZERO, vector) - vector(self.internal_force());
         let damping = self.damping().map_or(0.0, |all| all[row].to_f64());
         coefficients.foresee(self.inertia()[row].to_f64(), damping, self.axes()[row], vector(self.increments()), force)
+    }
+
+    /// Notes that one of these nodes goes farther (m) than contact between surfaces has foreseen when it counted what
+    /// it takes, with `work_factor` for each joule.
+    pub(crate) fn note_farther(&mut self, row: usize, farther: DVec3, work_factor: f64) {
+        if let Some(Met { force, touch }) = &mut self.met {
+            let given = 0.5 * work_factor * vector_at(force, 3 * row).dot(farther);
+            let loss = &mut touch[MEETING_NUMBERS * row + 7];
+            *loss = T::from_f64(loss.to_f64() - given);
+        }
     }
 
     /// Adds to the load on one of these nodes (N), which a system may that has `&mut ExternalForce` among its
@@ -177,6 +217,7 @@ impl<'a, T> NodeColumns<'a, T> {
             previous_prescribed: first_mut(&mut self.previous_prescribed, 3 * rows),
             touches: self.touches.as_mut().map(|all| all.take(until)),
             holds: self.holds.as_mut().map(|all| all.take(until)),
+            met: self.met.as_mut().map(|all| all.take(rows)),
             own: self.own.take(rows),
         };
         self.first += rows;

@@ -32,6 +32,7 @@ fn every_task_has_a_place_for_its_work() {
             previous_prescribed: &mut [],
             touches: None,
             holds: None,
+            met: None,
             own: OwnRows::default(),
         };
         let mut places = 0;
