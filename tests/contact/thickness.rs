@@ -127,14 +127,17 @@ fn the_walls_of_a_flat_ring_stay_apart_by_the_thickness() {
     for run in cpu_and_long_gpu() {
         let touching = of_a_flat_ring(&run, "Tet4", 32, 1e-6, (3e3, ""));
         assert!(touching < 4.5e-4, "{}: {touching} m without a thickness", run.name);
-        for (elements, cells, thickness, young, more) in [
+        let all = [
+            ("Tet4", 16, 1e-3, 3e4, ""),
+            ("Hex8", 24, 1.2e-3, 3e3, held),
             ("Tet4", 32, 7e-4, 3e3, ""),
             ("Tet4", 24, 1e-3, 3e3, ""),
             ("Tet4", 24, 1.2e-3, 3e3, held),
-            ("Tet4", 16, 1e-3, 3e4, ""),
-            ("Hex8", 24, 1.2e-3, 3e3, held),
             ("Hex8", 40, 6e-4, 3e4, held),
-        ] {
+        ];
+        // in software a GPU takes long enough for two
+        let some = if run.name.starts_with("GPU") { &all[..2] } else { &all[..] };
+        for &(elements, cells, thickness, young, more) in some {
             let apart = of_a_flat_ring(&run, elements, cells, thickness, (young, more));
             assert!(apart > 0.98 * thickness, "{}, {elements}, {cells} cells: {apart} m", run.name);
         }

@@ -3,17 +3,16 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use sinew::backend::gpu::gpu_or_reason;
+use sinew::mesh::ElementKind;
 use sinew_studies::hard::{CASES, Case, CaseConfiguration, run};
 
 /// Whether a configuration has its turn on this machine. A GPU in software takes a hundred times as long: there a case
 /// is run with two kinds of elements, plain ones and those with a mean pressure by turns. Contact is the same kernels
-/// whatever it moves: its cases are run with one kind, each kind with a quarter of them, and those that take
-/// five minutes with none: what slides and meets elsewhere does so by the same kernels. `sinew hard` leaves nothing
-/// out.
+/// whatever it moves: its cases are run with one kind, each kind with a quarter of them. What is slow there has no
+/// row: what slides and meets elsewhere does so by the same kernels. `sinew hard` leaves nothing out.
 fn has_turn(case: &Case, configuration: &CaseConfiguration, software: bool) -> bool {
     let number: usize = case.id[1..].parse().expect("a case has a number");
-    // implicit steps of columns that are wound round each other take minutes a row: one kind of elements
-    if case.id == "h58" && configuration.implicit && configuration.elements_name() != "Hex8" {
+    if case.slow.implicit && configuration.implicit && configuration.elements != ElementKind::Hex8 {
         return false;
     }
     let kinds = if number < 36 { 2 } else { 1 };
@@ -22,11 +21,8 @@ fn has_turn(case: &Case, configuration: &CaseConfiguration, software: bool) -> b
     let is_it = |(place, row): (usize, &CaseConfiguration)| {
         place % turns == number % turns && row.elements == configuration.elements
     };
-    !(software && configuration.is_gpu()) || !TOO_LONG.contains(&case.id) && rows.iter().enumerate().any(is_it)
+    !(software && configuration.is_gpu()) || !case.slow.software && rows.iter().enumerate().any(is_it)
 }
-
-/// What a GPU in software takes minutes for.
-const TOO_LONG: [&str; 2] = ["h49", "h58"];
 
 fn check(id: &str) {
     let case = CASES.iter().find(|case| case.id == id).unwrap_or_else(|| panic!("there is no case {id}"));

@@ -41,8 +41,25 @@ pub struct Case {
     pub on: fn(&CaseConfiguration) -> bool,
     /// What it means under implicit steps.
     pub implicitly: Implicitly,
+    /// Which rows take minutes, so that everyday tests run one of them or none.
+    pub slow: Slow,
     /// Runs it and measures.
     pub run: fn(&mut Trial<'_>) -> Result<(), Error>,
+}
+
+/// Which rows of a case take minutes. `sinew hard` leaves nothing out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Slow {
+    /// Those of a GPU in software.
+    pub software: bool,
+    /// Those of implicit steps, of which one is enough.
+    pub implicit: bool,
+}
+
+impl Slow {
+    pub(crate) const NOTHING: Self = Self { software: false, implicit: false };
+    pub(crate) const IN_SOFTWARE: Self = Self { software: true, implicit: false };
+    pub(crate) const BOTH: Self = Self { software: true, implicit: true };
 }
 
 impl Case {

@@ -20,12 +20,15 @@ use super::implicit::{
     FINE, FRAMES, IMPACT, KEEPING, KINEMATIC, MEETING, NEWTON, ON_HOST, PRESSED, SHORT, SLIDING, STABLE_STEP, STIFFEST,
     SUCTION, TOO_FAST, TOUCHING, TURNING,
 };
-use super::{Case, CaseConfiguration};
+use super::{Case, CaseConfiguration, Slow};
 use contact::{free, friction, holding, indentation, patch, rest, shapes, springs, start, taking, waves};
 
 /// A case: its number and name make the path of its scene.
 macro_rules! case {
     ($id:literal $name:literal $title:literal, $passes:literal, $on:expr, $run:path, $implicitly:expr) => {
+        case!($id $name $title, $passes, $on, $run, $implicitly, Slow::NOTHING)
+    };
+    ($id:literal $name:literal $title:literal, $passes:literal, $on:expr, $run:path, $implicitly:expr, $slow:expr) => {
         Case {
             id: $id,
             name: $name,
@@ -34,6 +37,7 @@ macro_rules! case {
             scene: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/hard/", $id, "_", $name, ".ron")),
             on: $on,
             implicitly: $implicitly,
+            slow: $slow,
             run: $run,
         }
     };
@@ -153,7 +157,7 @@ pub const CASES: &[Case] = &[
     case!("h46" "stack" "cube on a cube on a table", "m g and 2 m g within 1e-3, creeps by less than 1e-7 m", every, rest::stack, TOUCHING),
     case!("h47" "contact_patch" "pressure across cells that do not match", "stress within 6 %", every, patch::contact_patch, TOUCHING),
     case!("h48" "punch" "plate pressed on a block", "uniform stress to 1e-6 (f64)", every, rest::punch, PRESSED),
-    case!("h49" "ironing" "ball drawn over ten faces", "nodes held by μ within 1 %, ripple at most 20 %", one_point, friction::ironing, SLIDING),
+    case!("h49" "ironing" "ball drawn over ten faces", "nodes held by μ within 1 %, ripple at most 20 %", one_point, friction::ironing, SLIDING, Slow::IN_SOFTWARE),
     case!("h50" "oblique" "oblique collision of two free cubes",
         "momentum to 1e-10 (f64), its moment to 1e-6, no energy made", every, free::oblique, MEETING),
     case!("h51" "restitution" "nodes that hit a plate, by the kinematic law and by springs",
@@ -168,7 +172,7 @@ pub const CASES: &[Case] = &[
         "presses as a whole one, or is refused by name", every, start::bad_surface, SLIDING),
     case!("h57" "sharp_edges" "edge across an edge, corner on an edge",
         "weight within 1e-3, a tenth of an edge deep at most", every, shapes::edges, SLIDING),
-    case!("h58" "wound_columns" "two columns wound round each other", "none is in the other; volume within 3 %", every, shapes::wound, SLIDING),
+    case!("h58" "wound_columns" "two columns wound round each other", "none is in the other; volume within 3 %", every, shapes::wound, SLIDING, Slow::BOTH),
     case!("h59" "pile" "pile of 12 cubes (in full 1000)", "weight within 1 %, energy falls, the same bits", every, shapes::pile, SLIDING),
     case!("h61" "grasp" "cube that is grasped, lifted, carried and let go",
         "weight within 1e-4; closing makes no energy, opening no momentum", every, holding::grasp, SLIDING),
