@@ -43,7 +43,12 @@ impl Carrier {
 
 impl Far {
     fn turned(&self, nodes: &[DVec3]) -> DVec3 {
-        let outer = |(x, g): (&DVec3, &DVec3)| DMat3::from_cols(*x * g.x, *x * g.y, *x * g.z);
+        // from a node on: far from the origin places have digits that would be lost
+        let origin = nodes.first().copied().unwrap_or_default();
+        let outer = |(&x, g): (&DVec3, &DVec3)| {
+            let way = x - origin;
+            DMat3::from_cols(way * g.x, way * g.y, way * g.z)
+        };
         let gradient = nodes.iter().zip(&self.gradients).map(outer).fold(DMat3::ZERO, |sum, more| sum + more);
         rotation(gradient) * self.offset
     }
@@ -117,13 +122,14 @@ impl<'a> Carriers<'a> {
             None => natural += topology.nodes.iter().map(|node| DVec3::from_array(*node)).sum::<DVec3>() / count as f64,
         }
         let shape = topology.solid.map_or_else(Shape::default, |solid| (solid.shape)(natural.to_array()));
-        let at: DVec3 = places.iter().zip(&shape.values).map(|(place, value)| *value * *place).sum();
+        let origin = places.first().copied().unwrap_or_default();
+        let at: DVec3 = places.iter().zip(&shape.values).map(|(&place, &value)| value * (place - origin)).sum();
         let inverse = shape.jacobian(&places).inverse();
         let mut carrier = Carrier { element, weights: shape.values, far: None };
         if !inverse.is_finite() {
             return carrier;
         }
-        let way = x - at;
+        let way = (x - origin) - at;
         let sizes = (inverse * way / extent(kind)).abs().max_element();
         let share = if sizes > REACH { REACH / sizes } else { 1.0 };
         let mut gradients = [DVec3::ZERO; MOST_NODES];

@@ -293,6 +293,33 @@ fn a_point_is_found_where_the_shape_functions_put_it() {
     }
 }
 
+/// Far from the origin places have fewer digits, and a point is found by all that they have: 10 km off, cells of 1 mm
+/// have lost seven of sixteen, and Newton's steps, which ended by what is left near the origin, never did.
+#[test]
+fn a_point_is_found_far_from_the_origin_too() {
+    for (kind, topology, solid, p) in solids() {
+        let middle =
+            topology.nodes.iter().map(|&at| DVec3::from_array(at)).sum::<DVec3>() / topology.nodes.len() as f64;
+        for offset in [DVec3::ZERO, DVec3::new(1e4, -7e3, 5e3)] {
+            // half as far from the reference cell as the others
+            let moved = |(at, node): (&DVec3, &[f64; 3])| offset + 1e-3 * at.midpoint(DVec3::from_array(*node));
+            let p: Vec<DVec3> = p.iter().zip(topology.nodes).map(moved).collect();
+            for corner in topology.nodes {
+                let at = middle.lerp(DVec3::from_array(*corner), 0.8).to_array();
+                let values = (solid.shape)(at).values;
+                let x = p[0] + p.iter().zip(values).map(|(point, value)| (*point - p[0]) * value).sum::<DVec3>();
+                let found = (solid.locate)(&p, x);
+                let miss = found.weights.iter().zip(values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                // the point is rounded by half a unit of its last digit, and weights change by some a cell
+                let most = 1e-12 + 16.0 * f64::EPSILON * offset.length() / 1e-3;
+                assert!(found.outside == 0.0 && miss < most, "{kind:?} at {at:?} from {offset}: {miss:e}, {found:?}");
+            }
+            let volume = (solid.volume)(&p) / (1e-9 * solid.unit_volume);
+            assert!(volume > 0.1 && volume < 10.0, "{kind:?} from {offset}: {volume}");
+        }
+    }
+}
+
 #[test]
 fn the_jacobian_of_a_linear_map_is_its_matrix() {
     // the Jacobian of a cell that is mapped by a matrix is that matrix, anywhere in it

@@ -15,7 +15,12 @@ pub struct Shape {
 impl Shape {
     /// ∂X/∂ξ of a cell whose nodes are there (m); columns: natural coordinates.
     pub fn jacobian(&self, p: &[DVec3]) -> DMat3 {
-        let outer = |(p, n): (&DVec3, &DVec3)| DMat3::from_cols(*p * n.x, *p * n.y, *p * n.z);
+        // from a node on: far from the origin places have digits that would be lost
+        let origin = p.first().copied().unwrap_or_default();
+        let outer = |(&p, n): (&DVec3, &DVec3)| {
+            let way = p - origin;
+            DMat3::from_cols(way * n.x, way * n.y, way * n.z)
+        };
         p.iter().zip(&self.gradients).map(outer).fold(DMat3::ZERO, |sum, more| sum + more)
     }
 }
@@ -42,29 +47,32 @@ pub(super) fn first<const N: usize>(p: &[DVec3]) -> [DVec3; N] {
     std::array::from_fn(|i| p[i])
 }
 
-/// Locates a point by Newton's method; the map is linear on a parallelepiped and nearly so elsewhere.
+/// A step of Newton's iterations (cell sizes) after which the next changes nothing: it would be its square.
+const LAST: f64 = 1e-10;
+
+/// A step that is no smaller after all iterations than rounding lets it be, in a cell that is nearly flat.
+const ROUNDED: f64 = 1e-6;
+
+/// Locates a point by Newton's method; the map is linear on a parallelepiped and nearly so elsewhere. Places count from
+/// the first node, so that it does not matter how far from the origin the cell is.
 pub(super) fn newton(p: &[DVec3], x: DVec3, shape: fn([f64; 3]) -> Shape, clip: fn(DVec3) -> Inside) -> Located {
     let mut weights = [0.0; MOST_NODES];
     weights[..p.len()].fill(1.0 / p.len() as f64);
     let nowhere = Located { weights, outside: f64::INFINITY };
+    let origin = p.first().copied().unwrap_or_default();
+    let x = x - origin;
     let (mut r, mut reached) = (DVec3::ZERO, false);
     for _ in 0..20 {
         let n = shape(r.to_array());
-        let (mut here, mut slope) = (DVec3::ZERO, DMat3::ZERO);
-        for (node, &place) in p.iter().enumerate() {
-            here += n.values[node] * place;
-            let gradient = n.gradients[node];
-            slope += DMat3::from_cols(place * gradient.x, place * gradient.y, place * gradient.z);
-        }
-        let step = slope.inverse() * (x - here);
+        let here: DVec3 = p.iter().zip(&n.values).map(|(&place, &value)| value * (place - origin)).sum();
+        let step = n.jacobian(p).inverse() * (x - here);
         // far outside the map folds over; what is there is no good place anyway
         r = (r + step).clamp(DVec3::splat(-5.0), DVec3::splat(5.0));
         if !r.is_finite() {
             return nowhere;
         }
-        if step.length() < 1e-10 {
-            // the step that has just been taken was the last that matters: the next would be its square
-            reached = true;
+        reached = step.length() < ROUNDED;
+        if step.length() < LAST {
             break;
         }
     }
