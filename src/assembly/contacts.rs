@@ -104,9 +104,10 @@ pub(super) fn spawn_idle(assembly: &Assembly<'_>, world: &mut World) {
 }
 
 /// How far a node may go in a step against a tool (m) with only its end looked at: who goes half as far as the tool is
-/// thick from its middle is still nearest to the side that it came through. 0: it may be any way.
+/// thick from its middle is still nearest to the side that it came through. Of a tool that is a mesh no farther than
+/// half of its grid's spacing: it may have edges and tapers that are thinner than a spacing. 0: it may be any way.
 pub(super) fn sweeps_beyond(geometry: &Geometry, edge: f64) -> f64 {
-    geometry.smallest_radius().map_or(0.0, |radius| (SAFELY * radius).max(1e-6 * edge))
+    geometry.smallest_radius().map_or(0.0, |radius| (SAFELY * radius).min(geometry.blur()).max(1e-6 * edge))
 }
 
 /// Tells that nodes of a body meet a tool by two contacts, of these numbers: which of them would count?

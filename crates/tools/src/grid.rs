@@ -24,6 +24,16 @@ const EXACT: f64 = 3.0;
 /// Off its triangles by more than this part of its spacing, on average, a grid is too coarse.
 const COARSE: f64 = 0.1;
 
+/// By so much of a spacing a neighbour may be deeper of a point that is halfway between two sides: planes that are
+/// tilted pass beside the points.
+const DEEPER: f64 = 0.1;
+
+/// The cosine between the directions to two sides from which on a place is between these, and not beside an edge.
+const OPPOSITE: f64 = -0.8;
+
+/// What grows deeper by more than this part of the way along it tapers to an edge: an opening of 14°.
+const TAPER: f64 = 0.125;
+
 /// Signed distances to a closed surface at the points of a grid, linear along each axis between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DistanceGrid {
@@ -39,6 +49,7 @@ pub struct DistanceGrid {
     bounds: [DVec3; 2],
     /// Of what the triangles enclose.
     moments: Moments,
+    thinnest: f64,
     surface_error: f64,
     notes: Vec<String>,
 }
@@ -94,8 +105,10 @@ impl DistanceGrid {
             }
         });
         let moments = mass::enclosed(&closed.surface);
-        let mut grid = Self { origin, spacing, counts, values, bounds, moments, surface_error: 0.0, notes: Vec::new() };
+        let (thinnest, surface_error, notes) = (0.0, 0.0, Vec::new());
+        let mut grid = Self { origin, spacing, counts, values, bounds, moments, thinnest, surface_error, notes };
         grid.check()?;
+        grid.thinnest = grid.halfway().max(0.5 * spacing).min(grid.depth());
         let (farthest, mean) = grid.off(&closed.surface);
         grid.surface_error = farthest;
         let lost = Lost::of(&grid, &closed, &tree);
@@ -137,6 +150,43 @@ impl DistanceGrid {
             Some(&first) => Err(SurfaceError::Crosses { at: self.origin + self.spacing * first, count: wrong.len() }),
             None => Ok(()),
         }
+    }
+
+    /// How deep the shallowest point is (m) that lies halfway between two sides: none of its neighbours is deeper, the
+    /// surface is the other way on either side of it, and it is as deep farther away from both. Infinite where there is
+    /// none.
+    fn halfway(&self) -> f64 {
+        let [nx, ny, nz] = self.counts.to_array().map(|count| count as usize);
+        let (ways, spacing) = ([1, nx, nx * ny], self.spacing);
+        let at = |row: usize| f64::from(self.values[row]);
+        let normal = |row: usize| DVec3::from_array(ways.map(|way| at(row + way) - at(row - way))).normalize_or_zero();
+        let is_even = |row: usize, outwards: DVec3| {
+            let [i, j, k] = [row % nx, row / nx % ny, row / (nx * ny)].map(|count| count as f64);
+            let mut y = self.origin + spacing * (DVec3::new(i, j, k) - 2.0 * outwards.normalize_or_zero());
+            // and farther from what is nearest there
+            (0..4).all(|_| {
+                let (distance, gradient) = self.within(y);
+                y -= spacing * gradient;
+                distance >= at(row) - 2.0 * TAPER * spacing
+            })
+        };
+        let is_halfway = |row: usize| {
+            let least = at(row) - DEEPER * spacing;
+            at(row) < 0.0
+                && ways.into_iter().all(|way| at(row - way) >= least && at(row + way) >= least)
+                && ways.into_iter().any(|way| {
+                    let [one, other] = [normal(row - 2 * way), normal(row + 2 * way)];
+                    one.dot(other) < OPPOSITE && is_even(row, one + other)
+                })
+        };
+        // what is inside is three points from the border at least
+        let inner = |count: usize| 3..count.saturating_sub(3);
+        let of_line = |line: usize| {
+            let is_inner = inner(ny).contains(&(line % ny)) && inner(nz).contains(&(line / ny));
+            let rows = inner(if is_inner { nx } else { 0 }).map(|i| i + nx * line);
+            rows.filter(|&row| is_halfway(row)).map(|row| -at(row)).fold(f64::INFINITY, f64::min)
+        };
+        (0..ny * nz).into_par_iter().map(of_line).reduce(|| f64::INFINITY, f64::min)
     }
 
     /// The largest distance (m) at corners and middles of triangles, where there should be none, and the mean of those
@@ -238,7 +288,13 @@ impl DistanceGrid {
         self.moments
     }
 
-    /// How deep inside its deepest point is (m): half of the thickness of what is thin.
+    /// Half of its thickness where it is thinnest (m), to about a spacing: half of a spacing at least, and no more than
+    /// [`Self::depth`]. What tapers to an edge, by more than 14°, counts as it is where it ends to grow.
+    pub fn thinnest(&self) -> f64 {
+        self.thinnest
+    }
+
+    /// How deep inside its deepest point is (m): half of the thickness where it is thickest.
     pub fn depth(&self) -> f64 {
         -f64::from(self.values.iter().copied().fold(0.0, f32::min))
     }

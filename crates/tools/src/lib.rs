@@ -67,11 +67,21 @@ impl Geometry {
         }
     }
 
-    /// Half of what it measures across where it is thinnest (m), of a grid where it is thickest; none of a plane.
+    /// Half of what it measures across where it is thinnest (m), of a grid to about a spacing and half of one at least;
+    /// none of a plane.
     pub fn smallest_radius(&self) -> Option<f64> {
         match self {
             Self::Analytic(solid) => solid.smallest_radius(),
-            Self::Grid(grid) => Some(grid.depth()),
+            Self::Grid(grid) => Some(grid.thinnest()),
+        }
+    }
+
+    /// How far it may go wrong (m) to take it for as thick as [`Self::smallest_radius`] says: half of a grid's spacing,
+    /// as edges and what tapers may be thinner than one; else infinitely far.
+    pub fn blur(&self) -> f64 {
+        match self {
+            Self::Analytic(_) => f64::INFINITY,
+            Self::Grid(grid) => 0.5 * grid.spacing(),
         }
     }
 }

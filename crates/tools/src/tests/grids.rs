@@ -277,6 +277,36 @@ fn triangles_without_area_change_nothing() {
     assert!(grid.notes().len() == 1 && apart(&grid, &finer) < 0.03, "{} {:?}", apart(&grid, &finer), grid.notes());
 }
 
+/// A blade is as thin as it is, whatever is beside it; what is round or has right angles only is as thin as it is deep.
+#[test]
+fn half_of_the_thickness_is_told_where_it_is_least() {
+    let of_box = |size: DVec3| of_shape(Shape::Box { size }, 0.0, 4);
+    let beside = |thick: DVec3| moved(of_box(thick), DVec3::new(7.5, 0.0, 0.0));
+    let blade = together(of_box(DVec3::new(8.0, 8.0, 0.2)), beside(DVec3::new(6.0, 6.0, 6.0)));
+    let grid = DistanceGrid::new(&blade, 0.1).unwrap();
+    let thinnest = grid.thinnest();
+    assert!((thinnest - 0.1).abs() < 0.0501 && (grid.depth() - 3.0).abs() < 0.0501, "{thinnest}");
+    assert_eq!(Geometry::Grid(Arc::new(grid)).smallest_radius(), Some(thinnest));
+    let ball = of_shape(Shape::Sphere { radius: 1.0 }, 0.0, 80);
+    let turned = |mut surface: Triangles| {
+        let turn = glam::DQuat::from_euler(glam::EulerRot::XYZ, 0.4, -0.7, 1.1);
+        surface.points.iter_mut().for_each(|point| *point = turn * *point);
+        surface
+    };
+    for spacing in [0.1, 0.0837, 0.07] {
+        for surface in [cube(), turned(cube()), ball.clone(), turned(of_box(DVec3::new(3.0, 2.0, 2.4)))] {
+            let grid = DistanceGrid::new(&surface, spacing).unwrap();
+            let (thinnest, depth) = (grid.thinnest(), grid.depth());
+            assert!(thinnest <= depth && thinnest > 1.0 - 1.5 * spacing, "{spacing}: {thinnest}, {depth} deep");
+        }
+        let plate = DistanceGrid::new(&turned(of_box(DVec3::new(3.0, 3.0, 0.4))), spacing).unwrap();
+        assert!((plate.thinnest() - 0.2).abs() < spacing, "{spacing}: {}", plate.thinnest());
+    }
+    // too thin for its grid: no less than can be known
+    let lost = DistanceGrid::new(&of_box(DVec3::new(2.0, 2.0, 0.05)), 0.2).unwrap();
+    assert!(lost.thinnest() <= lost.depth(), "{}", lost.thinnest());
+}
+
 #[test]
 fn walls_thinner_than_the_spacing_are_told() {
     let plate = of_shape(Shape::Box { size: DVec3::new(2.0, 2.0, 0.05) }, 0.0, 4);
