@@ -8,10 +8,11 @@ use glam::DVec3;
 /// F = K (x_p − x_d) − B v_d + s F_t
 ///
 /// x_p is where the tool was last, carried on by its velocity for [`batch`](Self::batch) at most, x_d and v_d are the
-/// device's, F_t what the tool felt. The force is at most [`most_force`](Self::most_force), changes by K ·
-/// [`fastest`](Self::fastest) a second at most, and goes to 0 over [`decay`](Self::decay) when no touch comes any more:
-/// whatever the engine does, the hand is not pulled. Tissue of stiffness k is felt as K k/(K + k). Colgate et al. 1995
-/// for the coupling; the bound of K is [`largest_stiffness`](Self::largest_stiffness).
+/// device's, F_t what the tool felt. The force is at most [`most_force`](Self::most_force), changes in a second by K ·
+/// [`fastest`](Self::fastest) at most, or by as much as it takes to lose the largest force over [`decay`](Self::decay)
+/// where that is more, and is 0 after that time when no touch comes any more: whatever the engine does, the hand is not
+/// pulled. Tissue of stiffness k is felt as K k/(K + k). Colgate et al. 1995 for the coupling; the bound of K is
+/// [`largest_stiffness`](Self::largest_stiffness).
 #[derive(Clone, Debug, PartialEq)]
 pub struct VirtualCoupling {
     /// K (N/m).
@@ -24,9 +25,11 @@ pub struct VirtualCoupling {
     pub feed_forward: f64,
     /// The largest force of the device (N).
     pub most_force: f64,
-    /// The speed (m/s) with which a hand may load the spring: the force changes by no more than K times it a second.
+    /// The speed (m/s) with which a hand may load the spring: the force changes by no more than K times it a second, or
+    /// by the largest force over [`decay`](Self::decay) where that is more, as with no spring at all.
     pub fastest: f64,
-    /// Time between two touches (s): for so long the proxy goes on as it went, and for twice as long nothing decays.
+    /// Time between two touches (s), `every` of the port in the scene: for so long the proxy goes on as it went, and
+    /// for twice as long nothing decays.
     pub batch: f64,
     /// Time (s) over which the force goes to 0 after that.
     pub decay: f64,
@@ -70,19 +73,24 @@ impl VirtualCoupling {
         };
         let arrived = if touch.sequence == sequence { arrived } else { time };
         let silent = time - arrived;
+        let late = silent - 2.0 * self.batch;
+        let left = if late > 0.0 { (1.0 - late / self.decay).max(0.0) } else { 1.0 };
         let wanted = match touch.sequence {
             0 => DVec3::ZERO,
             _ => {
                 let proxy = touch.place + touch.velocity * silent.clamp(0.0, self.batch);
                 let spring = self.stiffness * (proxy - place) - self.damping * velocity;
-                let left = 1.0 - (silent - 2.0 * self.batch).max(0.0) / self.decay;
-                (spring + self.feed_forward * touch.force) * left.clamp(0.0, 1.0)
+                spring + self.feed_forward * touch.force
             }
         };
         // no device gets what is no number
-        let wanted = if wanted.is_finite() { wanted.clamp_length_max(self.most_force) } else { DVec3::ZERO };
-        let change = self.stiffness * self.fastest * (time - before).max(0.0);
-        self.force += (wanted - self.force).clamp_length_max(change);
+        let wanted = if wanted.is_finite() { left * wanted.clamp_length_max(self.most_force) } else { DVec3::ZERO };
+        let release = Some(self.most_force / self.decay).filter(|release| release.is_finite()).unwrap_or(0.0);
+        let change = (self.stiffness * self.fastest).max(release) * (time - before).max(0.0);
+        // what is to be lost is lost first, whichever way the rest goes
+        let kept = self.force.clamp_length_max(left * self.most_force);
+        let rest = (change - kept.distance(self.force)).max(0.0);
+        self.force = kept + (wanted - kept).clamp_length_max(rest);
         self.heard = Some((touch.sequence, arrived, time));
         self.force
     }

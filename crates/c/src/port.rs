@@ -157,9 +157,16 @@ pub unsafe extern "C" fn sinew_port_open(
         if ![stiffness, damping, most_force, feed_forward].iter().all(|number| number.is_finite() && *number >= 0.0) {
             return Err(Failure::argument("the numbers of `coupling` must be finite, and 0 or above"));
         }
-        let end = with(simulation, |state, _| Ok(state.simulation.open_port(name)?))?;
+        let (end, batch) = with(simulation, |state, _| {
+            let end = state.simulation.open_port(name)?;
+            let mut ports = state.simulation.scene().tools.values().filter_map(|tool| tool.port.as_ref());
+            let every = ports.find(|port| port.name == name).map(|port| port.every);
+            // a batch is a step at least
+            Ok((end, every.map(|every| every.max(state.simulation.time_step()))))
+        })?;
         let mut coupling = VirtualCoupling::new(stiffness, damping, most_force);
         coupling.feed_forward = feed_forward;
+        coupling.batch = batch.unwrap_or(coupling.batch);
         put(port, Box::into_raw(Box::new(SinewPort { ends: Mutex::new((end, coupling)) })), "port")
     })
 }

@@ -89,6 +89,33 @@ fn when_no_touch_comes_any_more_the_force_decays_without_a_jump() {
     assert!((forces[2900] + DVec3::Y * 2.0).length() < 3e-3, "{}", forces[2900]);
 }
 
+/// No spring, or a soft one, and what the tool feels is passed on: it comes, and goes when no touch comes any more,
+/// by as much in a tick as it takes for that, wherever the hand goes meanwhile.
+#[test]
+fn a_force_that_is_passed_on_needs_no_spring() {
+    let most = 2.0 / 0.05 * TICK;
+    for stiffness in [0.0, 10.0] {
+        let mut coupling = VirtualCoupling::new(stiffness, 0.0, 2.0);
+        coupling.feed_forward = 1.0;
+        let mut touch = Touch { force: DVec3::X * 1.9, ..Touch::default() };
+        let mut last = DVec3::ZERO;
+        for step in 0..600_u32 {
+            touch.sequence += u64::from(step < 500);
+            // from where it began to 10 cm beside it, which the spring pulls at as long as there are touches
+            let place = DVec3::Y * if step < 500 { 0.0 } else { -0.1 };
+            let force = coupling.force(&touch, place, DVec3::ZERO, f64::from(step) * TICK);
+            assert!((force - last).length() <= most * (1.0 + 1e-9), "{stiffness} N/m, {step}: from {last} to {force}");
+            if step == 499 {
+                assert!((force - touch.force).length() < 1e-12, "{stiffness} N/m: {force}");
+            }
+            // from 2 ms after the last touch, in tick 499, over 50 ms
+            let left = 1.0 - (f64::from(step) - 501.0).max(0.0) / 50.0;
+            assert!(force.length() <= 2.0 * left.max(0.0) + 1e-9, "{stiffness} N/m, {step}: {force}");
+            last = force;
+        }
+    }
+}
+
 /// A device's clock may have gone for a day: the first touch comes by the slew, as where it begins with 0.
 #[test]
 fn a_clock_that_begins_late_lets_nothing_jump() {

@@ -31,14 +31,16 @@ static void grab(void) {
     sinew_simulation_free(simulation);
 }
 
+/* a probe over a pad, and what is said of its port beside its name */
+#define PAD(port)                                                                                                   \
+    "(duration: 1, bodies: {\"pad\": (mesh: Box(size: (0.06, 0.06, 0.02), cells: (6, 6, 2), elements: Hex8), "        \
+    "material: \"gel\")}, materials: {\"gel\": (density: 1000, neo_hookean: Young(young: 20000, poisson: 0.4), "      \
+    "damping: 20)}, constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))], "                                    \
+    "tools: {\"probe\": (shape: Sphere(radius: 0.01), at: (0.03, 0.03, 0.035), "                                    \
+    "port: (name: \"hand\", speed: 0.5, follow: Position" port "))}, contacts: [Tool(tool: \"probe\")])"
+
 static void port(void) {
-    const char *scene =
-        "(duration: 1, bodies: {\"pad\": (mesh: Box(size: (0.06, 0.06, 0.02), cells: (6, 6, 2), elements: Hex8), "
-        "material: \"gel\")}, materials: {\"gel\": (density: 1000, neo_hookean: Young(young: 20000, poisson: 0.4), "
-        "damping: 20)}, constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))], "
-        "tools: {\"probe\": (shape: Sphere(radius: 0.01), at: (0.03, 0.03, 0.035), "
-        "port: (name: \"hand\", speed: 0.5, follow: Position))}, contacts: [Tool(tool: \"probe\")])";
-    SinewSimulation *simulation = simulation_of(scene);
+    SinewSimulation *simulation = simulation_of(PAD(""));
     SinewCoupling coupling;
     SinewPose pose;
     SinewTouch touch;
@@ -68,6 +70,39 @@ static void port(void) {
     sinew_simulation_free(simulation);
     FINE(sinew_port_send(hand, &pose)); /* nobody hears it */
     sinew_port_free(hand);
+}
+
+/* a force that is passed on without a spring, by a port that hears of the tool each 10 ms: it stays between them */
+static void slow_port(void) {
+    SinewSimulation *simulation = simulation_of(PAD(", every: 0.01"));
+    SinewCoupling coupling;
+    SinewPose pose;
+    SinewTouch touch;
+    SinewPort *hand = NULL;
+    double force[3], before = 0;
+    uint64_t told = 0;
+    int tick;
+    SINEW_INIT(&touch);
+    SINEW_INIT(&pose);
+    SINEW_INIT(&coupling);
+    coupling.feed_forward = 1;
+    coupling.most_force = 100;
+    pose.place[0] = pose.place[1] = 0.03;
+    pose.place[2] = 0.025;
+    FINE(sinew_port_open(simulation, "hand", &coupling, &hand));
+    for (tick = 1; tick <= 200; tick++) {
+        pose.time = tick * 1e-3;
+        FINE(sinew_port_tick(hand, &pose, force));
+        FINE(sinew_port_touch(hand, &touch));
+        CLAIM(tick <= 100 || force[2] > 0.01);
+        CLAIM(tick <= 100 || touch.sequence != told || fabs(force[2] - before) < 1e-6 * before);
+        told = touch.sequence;
+        before = force[2];
+        FINE(sinew_advance_to(simulation, tick * 1e-3));
+    }
+    CLAIM(touch.sequence >= 18);
+    sinew_port_free(hand);
+    sinew_simulation_free(simulation);
 }
 
 static void memory(void) {
@@ -129,6 +164,7 @@ static void removal(void) {
 int main(void) {
     grab();
     port();
+    slow_port();
     memory();
     removal();
     return 0;
