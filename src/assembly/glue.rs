@@ -210,9 +210,8 @@ impl<'a> Gluing<'a> {
             let Some(found) = other.nearest(at, |place| marked[place] && !own.contains(&place)) else { continue };
             closest = closest.min(found.distance);
             let place_of = |row: u32| one.points[node_of[row as usize]];
-            let [whole, area] = areas(&corners, around, place_of, other.normal(&found));
-            // corners of faces with middles have none of their area
-            if found.distance > reach || whole <= 0.0 {
+            let Some(area) = area_of(&corners, around, place_of, other.normal(&found)) else { continue };
+            if found.distance > reach {
                 continue;
             }
             let strength = match (normal, shear) {
@@ -267,23 +266,29 @@ fn bears_nothing(tie: &TiedPoint) -> bool {
     shares.values().all(|share| share.abs() <= TOUCHES)
 }
 
-/// A node's share of the area (m²) of the faces `around` it, and of those among them that are turned towards what they
-/// are glued to, whose normal is `outward`: at the edge of a surface the faces around the corner bear nothing of glue.
-/// Where no face is so turned both are the same.
-fn areas(corners: &FaceCorners, around: &[u32], place_of: impl Fn(u32) -> DVec3, outward: DVec3) -> [f64; 2] {
-    let (mut whole, mut turned) = (0.0, 0.0);
+/// What parts of faces come to at a corner, as a share of their sizes, that cancel but for rounding and for how curved
+/// the faces are.
+const CANCELS: f64 = 0.05;
+
+/// A node's share of the area (m²) of the faces `around` it that are turned towards what they are glued to, whose
+/// normal is `outward`: at the edge of a surface the faces around the corner bear nothing of glue. Where no face is so
+/// turned it is that of all. None at corners of faces with middles: those have all of the area.
+fn area_of(corners: &FaceCorners, around: &[u32], place_of: impl Fn(u32) -> DVec3, outward: DVec3) -> Option<f64> {
+    let (mut all, mut turned) = ([0.0; 2], [0.0; 2]);
     for &corner in around {
         let (number, corner) = (corner as usize / 4, corner as usize % 4);
         let [a, b, c, d] = corners.faces[number].map(&place_of);
         // the product of the diagonals; the last corner of a triangle is its third
         let normal = (c - a).cross(d - b);
-        let area = corners.areas[number][corner];
-        whole += area;
+        let area: f64 = corners.areas[number][corner];
+        let add = |[sum, size]: [f64; 2]| [sum + area, size + area.abs()];
+        all = add(all);
         if normal.normalize_or_zero().dot(outward) < TURNED {
-            turned += area;
+            turned = add(turned);
         }
     }
-    [whole, if turned > 0.0 { turned } else { whole }]
+    let [sum, size] = if turned[1] > 0.0 { turned } else { all };
+    (sum > CANCELS * size).then_some(sum)
 }
 
 fn picked_faces(
