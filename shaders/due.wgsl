@@ -1,5 +1,5 @@
-// Whether an element's time has come.
+// Whether the time of an element has come; also of one that has gone.
 fn is_due(element: u32) -> bool {
     let due = removal_step[element];
-    return alive[element] == 1u && due != 0xffffffffu && due <= max(step.number, step.number + 1u);
+    return due != 0xffffffffu && due <= max(step.number, step.number + 1u);
 }

@@ -9,7 +9,7 @@
 @compute @workgroup_size(64)
 fn element_removal(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let element = row(id, groups);
-    if element >= block.count || !is_due(element) {
+    if element >= block.count || alive[element] == 0u || !is_due(element) {
         return;
     }
     let e = element_of(element);

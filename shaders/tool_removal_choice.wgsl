@@ -1,10 +1,11 @@
 // What a tool takes in, and which elements go for it: the second part of tool_removal.wgsl. One workgroup;
-// criterion_due is generated.
+// criterion_due and CRITERION_STEPS are generated.
 struct Choice {
     rate: u32, // slot of the volume a second (m³/s)
     intake: u32, // where the tool's numbers begin in tool_intake
     burst: u32, // elements that go at most
     chosen: u32, // where they are told in tool_reach: how many, then their numbers
+    largest: f32, // volume of the largest element that may go (m³)
 }
 @group(0) @binding(0) var<uniform> choice: Choice;
 @group(0) @binding(1) var<storage, read_write> tool_intake: array<f32>;
@@ -20,8 +21,9 @@ fn first_of(a: vec3<u32>, b: vec3<u32>) -> vec3<u32> {
 
 @compute @workgroup_size(64)
 fn tool_removal_choice(@builtin(local_invocation_index) lane: u32) {
+    let of_step = step.signals[choice.rate].x * step.time_step;
     if lane == 0u && tool_intake[choice.intake + 1u] != 0.0 {
-        tool_intake[choice.intake] += step.signals[choice.rate].x * step.time_step;
+        tool_intake[choice.intake] += of_step;
     }
     if !criterion_due() {
         return;
@@ -30,7 +32,7 @@ fn tool_removal_choice(@builtin(local_invocation_index) lane: u32) {
     if lane == 0u {
         tool_reach[choice.chosen] = 0u;
         tool_intake[choice.intake + 1u] = select(0.0, 1.0, found > 0u);
-        is_over = select(0u, 1u, found == 0u);
+        is_over = select(0u, 1u, found == 0u || of_step <= 0.0);
     }
     for (var turn = 0u; turn < choice.burst; turn++) {
         if workgroupUniformLoad(&is_over) == 1u {
@@ -64,6 +66,11 @@ fn tool_removal_choice(@builtin(local_invocation_index) lane: u32) {
         storageBarrier();
     }
     if lane == 0u {
+        // nothing is left in reach: what is more was no tissue
+        if tool_reach[choice.chosen] == found {
+            let most = choice.largest + f32(CRITERION_STEPS) * max(of_step, 0.0);
+            tool_intake[choice.intake] = min(tool_intake[choice.intake], most);
+        }
         tool_reach[0] = 0u;
     }
 }

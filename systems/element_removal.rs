@@ -6,7 +6,7 @@ use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::block_kernel::BlockKernels;
 use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK};
-use crate::backend::kernel::{Kernel, Uniform, uniform};
+use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
 use crate::backend::step::with_step;
 use crate::components::*;
 use crate::elements::Element;
@@ -28,7 +28,8 @@ pub const CRITERION_STEPS: u64 = 10;
 /// At the end of a step, elements go whose time has come or that pass a limit. Their volume and hourglass stiffness
 /// become zero, so that they exert nothing; what their nodes weigh is summed anew, and what they move with where mass
 /// is scaled, and nodes without elements are inactive; faces of removed elements bear no load. The energy and momentum
-/// they had are counted, and what of the energy constraints had given.
+/// they had are counted, kinetic energy with that of mass that was added to them, and what of the energy constraints
+/// had given.
 pub fn system() -> System {
     System::built_in(
         "element_removal",
@@ -97,7 +98,7 @@ fn element_removal(
         mut energies,
         mut given,
         mut momenta,
-        _,
+        added,
     ) in &mut blocks
     {
         let Ok((_, displacement, step, axes, ..)) = bodies.get(block.body) else {
@@ -130,7 +131,8 @@ fn element_removal(
         let held = |row: usize| {
             let state = view.element(row);
             let elastic = view.energy(row, &state) * state.volume;
-            let (kinetic, given, momentum) = motion(&state, density, (step, axes), clock.time_step);
+            let mass = (density * state.volume, added.map_or(0.0, |added| added[row]));
+            let (kinetic, given, momentum) = motion(&state, mass, (step, axes), clock.time_step);
             (elastic + state.hourglass_energy(row, view.shape) + kinetic, given, momentum)
         };
         let held: Vec<(f64, f64, DVec3)> = gone.iter().map(|&row| held(row)).collect();
@@ -190,10 +192,14 @@ pub(super) fn measure(measure: Measure, row: usize, view: &BlockView<'_>) -> f64
     }
 }
 
-/// ½ m v² of the element's share of its nodes (J), v in the middle of the last step; the part of it along constrained
-/// axes; and m v (kg m/s).
-fn motion(state: &ElementState, density: f64, (step, axes): (&Reals, &[u32]), time_step: f64) -> (f64, f64, DVec3) {
-    let mass = density * state.volume;
+/// ½ m v² of the element's share of its nodes (J), v in the middle of the last step, m with what was added to it; the
+/// part of it along constrained axes; and m v (kg m/s) without what was added.
+fn motion(
+    state: &ElementState,
+    (mass, added): (f64, f64),
+    (step, axes): (&Reals, &[u32]),
+    time_step: f64,
+) -> (f64, f64, DVec3) {
     let (mut all, mut constrained, mut mean) = (0.0, 0.0, DVec3::ZERO);
     for (&node, share) in state.nodes.iter().zip(mass_shares(state.kind)) {
         let v = step.vector(node as usize);
@@ -202,7 +208,7 @@ fn motion(state: &ElementState, density: f64, (step, axes): (&Reals, &[u32]), ti
         let held = (0..3).filter(|&i| axes[node as usize] >> i & 1 == 1).map(|i| v[i] * v[i]);
         constrained += share * held.sum::<f64>();
     }
-    let energy = |squares: f64| 0.5 * mass * squares / (time_step * time_step);
+    let energy = |squares: f64| 0.5 * (mass + added) * squares / (time_step * time_step);
     (energy(all), energy(constrained), mass / time_step * mean)
 }
 
@@ -277,7 +283,7 @@ fn criterion_kernel(block: &BlockKernels, criteria: &[&RemovalCriterion], buffer
     block.with_energy(kernel, buffers)
 }
 
-const REMOVED: [&str; 4] = [RestShape::NAME, Alive::NAME, RemovalStep::NAME, RemovedEnergy::NAME];
+const REMOVED: [&str; 3] = [RestShape::NAME, RemovalStep::NAME, RemovedEnergy::NAME];
 
 fn motion_kernel(block: &BlockKernels, world: &World, buffers: &mut dyn Buffers) -> Kernel {
     let density = world.get::<Density>(block.block.material).map_or(0.0, |density| density.0);
@@ -296,6 +302,13 @@ fn motion_kernel(block: &BlockKernels, world: &World, buffers: &mut dyn Buffers)
         .bind(DisplacementIncrement::NAME, buffers.column(block.block.body, DisplacementIncrement::NAME))
         .bind(ConstrainedAxes::NAME, buffers.column(block.block.body, ConstrainedAxes::NAME))
         .bind(RemovedWork::BUFFER, buffers.column(block.entity, RemovedWork::NAME));
+    let kernel = if world.get::<AddedMass>(block.entity).is_some() {
+        let added = buffers.column(block.entity, AddedMass::NAME);
+        kernel.fragment(shader!("added_mass")).bind(AddedMass::NAME, added)
+    } else {
+        let nothing = "fn added_to(element: u32) -> f32 {\n    return 0.0;\n}\n";
+        kernel.fragment(Fragment::new("generated: no added mass", nothing))
+    };
     REMOVED.iter().fold(kernel, |k, &name| k.bind(name, buffers.column(block.entity, name)))
 }
 
@@ -309,7 +322,8 @@ fn removal_kernel(block: &BlockKernels, buffers: &mut dyn Buffers) -> Kernel {
         .kernel("element_removal")
         .fragment(shader!("element_removal"))
         .fragment(shader!("due"))
-        .fragment(block.generated("extinction", text + "}\n"));
+        .fragment(block.generated("extinction", text + "}\n"))
+        .bind(Alive::NAME, buffers.column(block.entity, Alive::NAME));
     let kernel = REMOVED.iter().fold(kernel, |k, &name| k.bind(name, buffers.column(block.entity, name)));
     block.with_energy(kernel, buffers)
 }

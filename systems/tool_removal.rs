@@ -21,8 +21,10 @@ use glam::DVec3;
 /// are nearest to its mouth first, of equally near ones that of the lower number. So the volume that is gone is that
 /// which was taken in, to one element, whatever the mesh.
 ///
-/// What is in reach is looked at in every tenth step, as criteria are; while there is nothing, nothing is taken in. An
-/// element that is chosen is due at once: `element_removal` takes it in the same step.
+/// What is in reach is looked at in every tenth step, as criteria are; while there is nothing, nothing is taken in.
+/// Where nothing is left in reach, no more than the largest element's volume stays taken in, and what ten steps take:
+/// the rest was no tissue. While the rate is 0 nothing goes. An element that is chosen is due at once:
+/// `element_removal` takes it in the same step.
 pub fn system() -> System {
     System::built_in(
         "tool_removal",
@@ -67,8 +69,9 @@ fn tool_removal(
         for (number, removal) in by_rate(removals) {
             let at = INTAKE_NUMBERS * number;
             let mut volume = intake.get(at);
+            let of_step = signals.values()[removal.rate][0] * clock.time_step;
             if intake.get(at + 1) != 0.0 {
-                volume += signals.values()[removal.rate][0] * clock.time_step;
+                volume += of_step;
             }
             if clock.step.is_multiple_of(CRITERION_STEPS) {
                 let mut found = Vec::new();
@@ -79,15 +82,21 @@ fn tool_removal(
                 }
                 found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
                 intake.set(at + 1, f64::from(u8::from(!found.is_empty())));
+                let (count, mut gone) = (found.len(), 0);
                 for (.., entity, row, of_element) in found.into_iter().take(removal.burst as usize) {
                     // what is next waits until there is room for it
-                    if volume < of_element {
+                    if of_step <= 0.0 || volume < of_element {
                         break;
                     }
                     volume -= of_element;
+                    gone += 1;
                     if let Ok((.., mut due)) = blocks.get_mut(entity) {
                         due[row] = u32::try_from(clock.step).unwrap_or(u32::MAX);
                     }
+                }
+                // nothing is left in reach: what is more was no tissue
+                if gone == count {
+                    volume = volume.min(removal.largest + CRITERION_STEPS as f64 * of_step.max(0.0));
                 }
             }
             intake.set(at, volume);
@@ -165,8 +174,9 @@ struct Choice {
     intake: u32,
     burst: u32,
     chosen: u32,
+    largest: f32,
 }
-uniform!(Choice { rate, intake, burst, chosen });
+uniform!(Choice { rate, intake, burst, chosen, largest });
 
 /// Where a block's elements find whether they are chosen.
 #[derive(Clone, Copy, Debug)]
@@ -242,15 +252,17 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
 
 fn choice((removal, number): (&ToolRemoval, usize), chosen: u32, buffers: &mut dyn Buffers) -> BufferId {
     let intake = (INTAKE_NUMBERS * number) as u32;
-    let choice = Choice { rate: removal.rate as u32, intake, burst: removal.burst, chosen };
+    let (rate, burst, largest) = (removal.rate as u32, removal.burst, removal.largest as f32);
+    let choice = Choice { rate, intake, burst, chosen, largest };
     buffers.uniform("choice of tool_removal".into(), &choice.bytes())
 }
 
 /// Whether the criterion is due where a step ends.
 fn criterion_due() -> Fragment {
     let text = format!(
-        "fn step_that_comes() -> u32 {{\n    return max(step.number, step.number + 1u);\n}}\n\
-         fn criterion_due() -> bool {{\n    return step_that_comes() % {CRITERION_STEPS}u == 0u;\n}}\n"
+        "const CRITERION_STEPS: u32 = {CRITERION_STEPS}u;\n\
+         fn step_that_comes() -> u32 {{\n    return max(step.number, step.number + 1u);\n}}\n\
+         fn criterion_due() -> bool {{\n    return step_that_comes() % CRITERION_STEPS == 0u;\n}}\n"
     );
     Fragment::new("generated: when the criterion is due", text)
 }

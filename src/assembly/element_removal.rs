@@ -1,6 +1,6 @@
 //! Removal: what goes by time gets its step, what goes by criterion its limit.
 
-use super::{Assembly, BodyParts, select, tool_removal};
+use super::{Assembly, BodyParts, tool_removal};
 use crate::components::*;
 use crate::math::LANES;
 use crate::scene::diagnostic::Diagnostics;
@@ -33,11 +33,8 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         match &removal.when {
             &When::At(time) => by_time(body, &marks, time_step, world, |_| time),
             &When::During { start, end } => {
-                let ranks = ranks_from_center(body, &marks);
-                let last = ranks.iter().max().copied().unwrap_or(0).max(1) as f64;
-                by_time(body, &marks, time_step, world, |element| {
-                    start + (end - start) * f64::from(ranks[element]) / last
-                });
+                let times = times_from_center(body, &marks, (start, end));
+                by_time(body, &marks, time_step, world, |element| times[element]);
             }
             &When::StretchAbove(limit) => by_criterion(body, &removal.on, &marks, Measure::Stretch, limit, world),
             &When::VolumeRatioAbove(limit) => {
@@ -101,19 +98,31 @@ pub fn step_of(steps: f64, least: u64) -> u32 {
     (steps - 1e-6).ceil().clamp(least as f64, f64::from(u32::MAX)) as u32
 }
 
-/// For each marked element, how many lie nearer to the marked ones' centroid.
-fn ranks_from_center(body: &BodyParts, marks: &[bool]) -> Vec<u32> {
-    let marked: Vec<usize> = (0..marks.len()).filter(|&element| marks[element]).collect();
-    let centroid = |&element: &usize| select::centroid(&body.placed, element);
-    let center = marked.iter().map(centroid).sum::<DVec3>() / marked.len() as f64;
-    let mut sorted: Vec<(f64, usize)> =
-        marked.iter().map(|element| (centroid(element).distance_squared(center), *element)).collect();
-    sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let mut ranks = vec![0; marks.len()];
-    for (rank, (_, element)) in sorted.into_iter().enumerate() {
-        ranks[element] = rank as u32;
+/// When each marked element goes between two times (s): in each of the body's copies those first that are nearest to
+/// the centroid of its marked ones.
+fn times_from_center(body: &BodyParts, marks: &[bool], (start, end): (f64, f64)) -> Vec<f64> {
+    let (points, copies) = (body.placed.points(), body.copies.max(1));
+    let nodes = points.len().div_ceil(copies).max(1);
+    let mut marked: Vec<Vec<(DVec3, usize)>> = vec![Vec::new(); copies];
+    for element in (0..marks.len()).filter(|&element| marks[element]) {
+        let corners = body.placed.mesh.element(element);
+        let copy = corners[0] as usize / nodes;
+        // where the first copy has it: rounding makes no copy go otherwise than another
+        let sum: DVec3 = corners.iter().map(|&node| points[node as usize - copy * nodes]).sum();
+        marked[copy].push((sum / corners.len() as f64, element));
     }
-    ranks
+    let mut times = vec![start; marks.len()];
+    for of_copy in marked {
+        let center = of_copy.iter().map(|(place, _)| *place).sum::<DVec3>() / of_copy.len() as f64;
+        let mut sorted: Vec<(f64, usize)> =
+            of_copy.iter().map(|(place, element)| (place.distance_squared(center), *element)).collect();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let last = sorted.len().saturating_sub(1).max(1) as f64;
+        for (rank, (_, element)) in sorted.into_iter().enumerate() {
+            times[element] = start + (end - start) * rank as f64 / last;
+        }
+    }
+    times
 }
 
 fn by_criterion(body: &BodyParts, on: &Select, marks: &[bool], measure: Measure, limit: f64, world: &mut World) {

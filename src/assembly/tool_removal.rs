@@ -54,13 +54,15 @@ pub(super) fn add(assembly: &Assembly<'_>, body: &BodyParts, marks: &[bool], whe
     let crumb = crumb.unwrap_or_else(|| CRUMB * mean_volume(body, world));
     let rows = |&block: &Entity| world.get::<Block>(block).map_or(0, |block| block.count);
     let mut numbers: Vec<Vec<u32>> = body.blocks.iter().map(|block| vec![u32::MAX; rows(block)]).collect();
+    let mut largest = 0.0_f64;
     for (number, (&(block, row), &marked)) in (0..).zip(body.element_rows.iter().zip(marks)) {
         if marked {
             numbers[block as usize][row as usize] = number;
+            largest = largest.max(volume(body, (block, row), world));
         }
     }
     let (tool, reach, burst) = (name.clone(), *reach, *burst);
-    removals.all.push(ToolRemoval { tool, mouth, reach, pose, rate, threshold, crumb, burst, numbers });
+    removals.all.push(ToolRemoval { tool, mouth, reach, pose, rate, threshold, crumb, burst, largest, numbers });
     let intake = Reals::zeros(assembly.precision, INTAKE_NUMBERS * removals.all.len());
     let list = vec![0; removals.words(body.element_rows.len())];
     world.entity_mut(body.entity).insert((removals, ToolIntake(intake), ToolReach(list)));
@@ -76,12 +78,15 @@ const CRUMB: f64 = 4.0;
 
 /// Mean volume of a body's elements at rest (m³).
 fn mean_volume(body: &BodyParts, world: &World) -> f64 {
-    let of_element = |&(block, row): &(u32, u32)| {
-        let block = body.blocks[block as usize];
-        let parts = world.get::<Block>(block).zip(world.get::<RestShape>(block));
-        parts.map_or(0.0, |(block, shape)| rest_volume(block, row as usize, shape))
-    };
-    body.element_rows.iter().map(of_element).sum::<f64>() / body.element_rows.len().max(1) as f64
+    let sum: f64 = body.element_rows.iter().map(|&at| volume(body, at, world)).sum();
+    sum / body.element_rows.len().max(1) as f64
+}
+
+/// Volume at rest of the element of a block's place and a row (m³).
+fn volume(body: &BodyParts, (block, row): (u32, u32), world: &World) -> f64 {
+    let block = body.blocks[block as usize];
+    let parts = world.get::<Block>(block).zip(world.get::<RestShape>(block));
+    parts.map_or(0.0, |(block, shape)| rest_volume(block, row as usize, shape))
 }
 
 /// Where a tool takes elements. A mesh has no mouth of its own; validation has asked for one.

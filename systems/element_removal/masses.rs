@@ -120,6 +120,7 @@ fn with_inertia(kernel: Kernel, block: &BlockKernels, world: &World, buffers: &m
     );
     kernel
         .fragment(shader!("node_inertia"))
+        .fragment(shader!("added_mass"))
         .fragment(Fragment::new("generated: elements of volumes", element))
         .bind(InertialMass::NAME, buffers.column(block.block.body, InertialMass::NAME))
         .bind(AddedMass::NAME, buffers.column(block.entity, AddedMass::NAME))

@@ -40,6 +40,7 @@ pub const SUPPORT: &[(&str, &str)] = &[
     ("compensation", "compensated sums, in boundary"),
     ("node_damping", "damping, where elements can go"),
     ("node_inertia", "mass that is scaled, where elements can go"),
+    ("added_mass", "the same, in node_inertia and removed_motion"),
     ("node_state", "nodes as loads of a scene's own see them"),
     ("node_mass", "mass, where elements can go"),
     ("relaxation", "a static analysis, in integrate"),

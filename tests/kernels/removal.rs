@@ -2,7 +2,7 @@
 
 use super::kernel_worlds::{ALONG, AROUND, Effects, GROWING, LAWS, small_strains};
 use super::magnitude::{ROUNDINGS, magnitude};
-use super::pair::{UNIT, entities, run};
+use super::pair::{Pair, UNIT, entities, run};
 use bevy_ecs::prelude::World;
 use sinew::components::*;
 
@@ -21,17 +21,7 @@ fn the_same_elements_are_removed() {
             // some by time; of the criteria of every tenth step far more
             let removed = pair.changed::<Alive>();
             assert!((if step == 9 { 100 } else { 10 }..1500).contains(&removed), "{removed} removed in step {step}");
-            pair.agree::<RemovedEnergy>(|pair, block, i| {
-                let data = pair.before().get::<Block>(block).unwrap();
-                if i >= data.count {
-                    return 0.0;
-                }
-                let magnitude = magnitude(pair.before(), block, i);
-                // a stress along a strain, plus forces along displacements, plus 300 kg/m³ under 10 cm³ at 1 m/s
-                ROUNDINGS * UNIT * (magnitude.force * 0.01 + 1e-5)
-            });
-            // its part along constrained axes: 300 kg/m³ under 10 cm³ at 1 m/s
-            pair.agree::<RemovedWork>(|_, _, _| ROUNDINGS * UNIT * 1e-5);
+            energies_agree(&mut pair);
             // 300 kg/m³ under 10 cm³ at 1 m/s
             pair.agree::<RemovedMomentum>(|_, _, _| ROUNDINGS * UNIT * 3e-3);
             assert!(pair.changed::<RemovedMomentum>() > 10);
@@ -44,7 +34,21 @@ fn the_same_elements_are_removed() {
     }
 }
 
-/// Where mass is scaled, what was added to elements goes with them, in the same step.
+fn energies_agree(pair: &mut Pair) {
+    pair.agree::<RemovedEnergy>(|pair, block, i| {
+        let data = pair.before().get::<Block>(block).unwrap();
+        if i >= data.count {
+            return 0.0;
+        }
+        let magnitude = magnitude(pair.before(), block, i);
+        // a stress along a strain, plus forces along displacements, plus 300 kg/m³ under 10 cm³ at 1 m/s
+        ROUNDINGS * UNIT * (magnitude.force * 0.01 + 1e-5)
+    });
+    // its part along constrained axes: 300 kg/m³ under 10 cm³ at 1 m/s
+    pair.agree::<RemovedWork>(|_, _, _| ROUNDINGS * UNIT * 1e-5);
+}
+
+/// Where mass is scaled, what was added to elements goes with them, in the same step, and its kinetic energy.
 #[test]
 fn added_mass_goes_with_the_same_elements() {
     let scale = |world: &mut World| {
@@ -59,9 +63,11 @@ fn added_mass_goes_with_the_same_elements() {
         }
     };
     for damping in [false, true] {
-        let effects = Effects { removal: true, damping, ..Effects::default() };
+        let effects = Effects { removal: true, damping, moved: true, ..Effects::default() };
         let Some(mut pair) = run("element_removal", &effects, 9, scale) else { return };
         assert!(pair.changed::<Alive>() > 100);
+        energies_agree(&mut pair);
+        assert!(pair.changed::<RemovedWork>() > 10);
         // sums of up to 48 numbers
         pair.agree::<InertialMass>(|pair, body, i| 50.0 * UNIT * pair.host().get::<InertialMass>(body).unwrap().get(i));
         assert!(pair.changed::<InertialMass>() > 100);

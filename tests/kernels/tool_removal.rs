@@ -8,9 +8,9 @@ use sinew::components::*;
 use sinew::scene::schema::Curve;
 use sinew::tools::{Shape, Solid};
 
-/// A disc and a ball in each body, turned and off its middle, that take what is near; each element may go but every
-/// seventh.
-fn tools(world: &mut World, volume: f64) {
+/// A disc and a ball in each body, turned and off its middle, that take what is near, by a rate (m³/s) and so many at a
+/// time; each element may go but every seventh. They have taken in a volume (m³).
+fn tools(world: &mut World, volume: f64, rate: f64, burst: u32) {
     for body in entities::<Displacement>(world) {
         let blocks = world.get::<Authoring>(body).unwrap().blocks.clone();
         let rows = world.get::<Authoring>(body).unwrap().element_rows.clone();
@@ -32,7 +32,7 @@ fn tools(world: &mut World, volume: f64) {
             }
             let mut signals = world.resource_mut::<Signals>();
             let pose = signals.add(Signal::Pose { motion, reference: DVec3::ZERO });
-            let rate = signals.add(Signal::Load { curve: Curve::default(), amplitude: DVec3::X * 1e-6 });
+            let rate = signals.add(Signal::Load { curve: Curve::default(), amplitude: DVec3::X * rate });
             ToolRemoval {
                 tool: number.to_string(),
                 mouth,
@@ -41,7 +41,8 @@ fn tools(world: &mut World, volume: f64) {
                 rate,
                 threshold: None,
                 crumb: 0.0,
-                burst: 40,
+                burst,
+                largest: 1e-5,
                 numbers,
             }
         });
@@ -55,13 +56,29 @@ fn tools(world: &mut World, volume: f64) {
 #[test]
 fn tools_choose_the_same_elements() {
     let effects = Effects { removal: true, ..Effects::default() };
-    // room for some twenty elements, for none, and for all that may go at a time
-    for (step, volume, at_least, at_most) in [(9, 3e-6, 8, 159), (9, 0.0, 0, 0), (9, 1.0, 80, 160), (10, 3e-6, 0, 0)] {
-        let Some(mut pair) = run("tool_removal", &effects, step, |world| tools(world, volume)) else { return };
+    // room for some twenty elements, for none, for all that may go at a time, and for all in reach; tools that are off
+    for (step, volume, rate, burst, at_least, at_most) in [
+        (9, 3e-6, 1e-6, 40, 8, 159),
+        (9, 0.0, 1e-6, 40, 0, 0),
+        (9, 1.0, 1e-6, 40, 80, 160),
+        (10, 3e-6, 1e-6, 40, 0, 0),
+        (9, 1.0, 1e-6, 1024, 80, 2000),
+        (9, 1.0, 0.0, 40, 0, 0),
+    ] {
+        let tools = |world: &mut World| tools(world, volume, rate, burst);
+        let Some(mut pair) = run("tool_removal", &effects, step, tools) else { return };
         pair.identical::<RemovalStep>();
         let chosen = pair.changed::<RemovalStep>();
-        assert!((at_least..=at_most).contains(&chosen), "{chosen} of {volume} m³ in step {step}");
+        assert!((at_least..=at_most).contains(&chosen), "{chosen} of {volume} m³ at {rate} m³/s in step {step}");
         // a subtraction for each that is chosen, from the whole
-        pair.agree::<ToolIntake>(|_, _, i| if i % 2 == 1 { 0.0 } else { 40.0 * UNIT * volume.max(1e-6) });
+        let bound = f64::from(burst) * UNIT * volume.max(1e-6);
+        pair.agree::<ToolIntake>(|_, _, i| if i % 2 == 1 { 0.0 } else { bound });
+        if burst == 1024 {
+            // all in reach has gone, and what is left was no tissue
+            for body in entities::<ToolIntake>(pair.device.world_mut()) {
+                let intake = pair.device.world().get::<ToolIntake>(body).unwrap();
+                assert!([0, 2].iter().all(|&i| intake.get(i) > 9e-6 && intake.get(i) < 1.1e-5), "{intake:?}");
+            }
+        }
     }
 }

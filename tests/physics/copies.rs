@@ -240,6 +240,38 @@ fn loads_and_motion_differ_from_copy_to_copy() {
     }
 }
 
+/// Elements that go one after the other go alike in all copies, from the middle of each, as those of the body by
+/// itself.
+#[test]
+fn elements_of_all_copies_go_alike() {
+    for run in cpu_and_long_gpu() {
+        for elements in ["Hex8", "Tet4"] {
+            let [mut one, mut many] = ["", "copies: 3, apart: (0.03, 0, 0)"].map(|copies| {
+                run.start(&format!(
+                    "(duration: 1, integration: (step: 2e-4),
+                    bodies: {{\"b\": (mesh: Box(size: (0.01, 0.01, 0.01), cells: (3, 3, 3), elements: {elements}),
+                        material: \"m\", {copies})}},
+                    materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 1e4, poisson: 0.3))}},
+                    removal: [(on: Not(Box(min: (-1, -1, -1), max: (1, 1, 0.003))),
+                        when: During(start: 0.002, end: 0.012))])"
+                ))
+            });
+            for step in [20, 35, 50, 60] {
+                one.advance(step - one.step_count()).unwrap();
+                many.advance(step - many.step_count()).unwrap();
+                let (one, many) = (one.fields("b").unwrap().alive, many.fields("b").unwrap().alive);
+                let gone = one.iter().filter(|alive| **alive == 0).count();
+                // two thirds of them may go
+                let all = 2 * one.len() / 3;
+                assert!(gone > 0 && (gone == all) == (step == 60), "{}, {elements}: {gone} in step {step}", run.name);
+                for (copy, own) in many.chunks(one.len()).enumerate() {
+                    assert!(own == one, "{}, {elements}: copy {copy} in step {step}", run.name);
+                }
+            }
+        }
+    }
+}
+
 /// What is drawn lies where it should, is the same again, and has nothing to do with what is drawn elsewhere.
 #[test]
 fn draws_are_the_same_in_every_run_and_independent() {

@@ -168,6 +168,35 @@ fn scaled_mass_goes_with_its_elements() {
     }
 }
 
+/// Kinetic energy is of all that resists acceleration, and so is what of it goes with elements; the momentum that goes
+/// is of what they weigh. A cube moves without a strain, and a third of it goes, at the end of the sixteenth step.
+#[test]
+fn energy_of_scaled_mass_goes_with_its_elements() {
+    let moved = "constraints: [Prescribed(on: All, displacement: (0, 0, 0.02), curve: Ramp(end: 0.02))]";
+    for run in cpu_and_long_gpu() {
+        for by in ["loads: [Gravity(acceleration: (0, 0, 10))]", moved] {
+            let mut simulation = run.start(&format!(
+                "(duration: 0.02, integration: (step: 6.5e-4, when_unstable: ScaleMass(most: 1)), {by},
+                bodies: {{\"b\": (mesh: Box(size: (0.01, 0.01, 0.01), cells: (3, 3, 3), elements: Hex8), material: \"m\")}},
+                materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 1e4, poisson: 0.3))}},
+                removal: [(on: Box(min: (0, 0, 0), max: (0.01, 0.01, 0.004)), when: At(0.01))],
+                output: (energies_every: 0.005))"
+            ));
+            simulation.advance(16).unwrap();
+            let (what, bound) = (format!("{}, {by}", run.name), run.bound(1e-9, 1e-5));
+            let e = simulation.energies().unwrap();
+            let work = e.load_work.unwrap() + e.constraint_work.unwrap();
+            near(&format!("{what}: all"), e.kinetic + e.strain + e.hourglass + e.removed, work, work, bound);
+            near(&format!("{what}: removed"), e.removed, work / 3.0, work, bound);
+            let speed = velocities(&mut simulation, "b").iter().map(|v| v.z).fold(0.0, f64::max);
+            let summary = simulation.summary("").unwrap();
+            let momentum = summary.removed_mass * speed;
+            near(&format!("{what}: momentum"), summary.removed_momentum.z, momentum, momentum, bound);
+            assert_eq!(summary.removed_elements, 9, "{what}");
+        }
+    }
+}
+
 #[test]
 fn nodes_without_elements_are_inactive() {
     for (run, elements) in with_elements(&cpu_and_long_gpu(), 0) {

@@ -136,6 +136,59 @@ fn a_ball_takes_what_is_around_it() {
     }
 }
 
+/// The volume of a cell of the bar (m³).
+const CELL: f64 = 1.5625e-8;
+
+/// A bar of cells of 2.5 mm and a ball that goes along the middle of its upper side.
+fn passed(path: &str, takes: &str) -> String {
+    format!(
+        "(duration: 0.2, integration: (step: 2e-4),
+        bodies: {{\"b\": (mesh: Box(size: (0.04, 0.01, 0.01), cells: (16, 4, 4), elements: Hex8), material: \"m\")}},
+        materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 1e4, poisson: 0.3), damping: 50)}},
+        constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))],
+        tools: {{\"tip\": (shape: Sphere(radius: 2e-3), path: [{path}])}},
+        removal: [(when: InTool(tool: \"tip\", {takes}, crumb: 0))], probes: {{\"hole\": (what: RemovedVolume)}})"
+    )
+}
+
+/// A tool that takes far more than there is clears all in its way, two cells at a time. When it is off it takes
+/// nothing, though it goes on its way, and where it takes a ten thousandth, which is less than a cell until the end, no
+/// more than the cell that it may have taken in: not what it would have taken where there was nothing.
+#[test]
+fn what_was_no_tissue_is_not_taken_elsewhere() {
+    let path = "(t: 0, at: (0.001, 0.005, 0.01)), (t: 0.2, at: (0.039, 0.005, 0.01))";
+    for run in cpu_and_long_gpu() {
+        for (curve, most) in [("Step(end: 0.092)", 0.0), ("Table([(0.092, 1), (0.0921, 1e-4)])", 1.0)] {
+            let mut simulation = run.start(&passed(path, &format!("reach: 1e-4, rate: 1e-4, curve: {curve}")));
+            simulation.advance(460).unwrap();
+            let before = gone(&mut simulation);
+            near(&format!("{}, {curve}: on", run.name), before, 16.0 * CELL, CELL, 1e-3);
+            simulation.advance_to(0.2).unwrap();
+            let more = (gone(&mut simulation) - before) / CELL;
+            assert!(more <= most + 1e-3, "{}, {curve}: {more} cells", run.name);
+        }
+    }
+}
+
+/// What a tool has taken in of a cell when it leaves the tissue is there when it comes again: in ten visits of .4 cells
+/// each four go.
+#[test]
+fn what_was_tissue_is_not_lost_where_a_tool_leaves_it() {
+    let visit = |number: u32| {
+        let start = 0.02 * f64::from(number);
+        let of = |time: f64, height: f64| format!("(t: {}, at: (0.02, 0.005, {height})), ", start + time);
+        [of(0.0, 0.01), of(0.01, 0.01), of(0.0102, 0.03), of(0.0198, 0.03)].concat()
+    };
+    let path: String = (0..10).map(visit).collect();
+    for run in cpu_and_long_gpu() {
+        let mut simulation = run.start(&passed(&path, "reach: 5e-3, rate: 6.25e-7"));
+        simulation.advance_to(0.2).unwrap();
+        // .01 s of each visit, and up to ten steps of .2 ms until somebody looks
+        let cells = gone(&mut simulation) / CELL;
+        assert!((2.9..5.1).contains(&cells), "{}: {cells} cells", run.name);
+    }
+}
+
 fn bits_of(simulation: &mut Simulation) -> Vec<u64> {
     let alive = simulation.fields("b").unwrap().alive;
     let u = simulation.displacements("b").unwrap();
