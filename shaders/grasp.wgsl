@@ -4,7 +4,7 @@ struct GripRow {
     closed: u32, // the slot that says whether it is
     reach: f32, // how far a node may be when it closes (m)
     strength: f32, // the force above which a node slips out (N)
-    counts_work: u32, // whether work is counted
+    counts_work: u32, // whether work is counted, and nodes slip out
 }
 @group(0) @binding(0) var<uniform> tools: array<ToolRow, GRASPS>;
 @group(0) @binding(1) var<uniform> grips: array<GripRow, GRASPS>;
@@ -43,6 +43,8 @@ fn hold(i: u32, node: u32, number: u32, ends: vec4<f32>) -> vec4<f32> {
     if open && !is_closed {
         return ends;
     }
+    // what it bore in the step before, which is nothing where it takes the node in this one
+    let bore = any(vec3<f32>(tool_hold[own], tool_hold[own + 1u], tool_hold[own + 2u]) != vec3<f32>(0.0));
     for (var k = 0u; k < 3u; k++) {
         tool_hold[own + k] = 0.0;
     }
@@ -80,7 +82,7 @@ fn hold(i: u32, node: u32, number: u32, ends: vec4<f32>) -> vec4<f32> {
     let gap = of_node.free * (from_frame(at, of_tool) - place - of_node.predicted);
     let force = of_node.to_force * gap;
     // to the end of the step it holds, as others have been told
-    if length(force) > grips[number].strength {
+    if bore && grips[number].counts_work != 0u && length(force) > grips[number].strength {
         tool_hold[own + 3u] = SLIPPED;
     }
     tool_hold[own] = force.x;

@@ -25,7 +25,8 @@ pub(crate) use solved::{HeldNode, held_in_step, note_held};
 /// that is prescribed by a frame. Like `tool_contact` it finds the force that takes the predicted step there, after all
 /// other forces, and adds it to the loads: `integrate`, the balance of energy and the residual of a static analysis
 /// need not know of it, and the stable step stays as it is. Nothing jumps when it closes; when it opens, the node keeps
-/// the velocity of its last step.
+/// the velocity of its last step. Its strength is tested in motion, and not in the step in which it takes the node:
+/// what it takes to catch something that moves otherwise is an impulse, whose force is the larger the shorter the step.
 pub fn system() -> System {
     System::built_in_nodes::<Grasps>(
         "grasp",
@@ -42,7 +43,7 @@ pub struct GraspStep {
     /// Whether a solver holds the axes of nodes.
     solved: bool,
     coefficients: IntegrationCoefficients<f64>,
-    /// Whether work is counted: not on the way to rest.
+    /// Whether work is counted, and nodes slip out: not on the way to rest.
     counts_work: bool,
     /// One for each grasp, and others behind.
     tools: [ToolInStep; Grasps::MOST],
@@ -129,6 +130,8 @@ impl Grasps {
         if open && !closed {
             return ends;
         }
+        // what it bore in the step before, which is nothing where it takes the node in this one
+        let bore = values[..3].iter().any(|part| *part != T::default());
         values[..3].fill(T::default());
         if !closed {
             values[3] = T::from_f64(ToolHold::opened(values[3].to_f64()));
@@ -160,7 +163,7 @@ impl Grasps {
         let gap = foreseen.free * (pose.place(of_tool) - place - foreseen.step);
         let force = foreseen.to_force * gap;
         // to the end of the step it holds, as others have been told
-        if force.length() > grasp.strength {
+        if bore && step.counts_work && force.length() > grasp.strength {
             values[3] = T::from_f64(ToolHold::SLIPPED);
         }
         for i in 0..3 {

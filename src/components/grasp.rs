@@ -9,11 +9,11 @@ use glam::DVec3;
 columns! {
     /// What tools do to the nodes that they may hold: for each of [`Grasps::rows`] and each of its grasps
     /// [`HOLD_NUMBERS`] numbers: the force on the node in the last step (N); 0 while the tool is open, 1 where it holds
-    /// the node, 2 where it closed without it, 3 where the node slipped out, and 4 while it is open since; since the
-    /// start the work that the tool has done
-    /// and what of that was lost when it caught the node (J); the place in the tool's frame where the node was when it
-    /// closed (m). Where a hand moves one of the tools, [`FELT_NUMBERS`] more: the sum of the forces since its batch of
-    /// steps began (N). Exists where a tool may hold nodes of the body.
+    /// the node, 2 where it closed without it, 3 where the node slipped out (a force beside it is that of the step at
+    /// whose end it did), and 4 while it is open since; since the start the work that the tool has done and what of
+    /// that was lost when it caught the node (J); the place in the tool's frame where the node was when it closed (m).
+    /// Where a hand moves one of the tools, [`FELT_NUMBERS`] more: the sum of the forces since its batch of steps began
+    /// (N). Exists where a tool may hold nodes of the body.
     ToolHold(Reals) = "tool_hold", State of Grip, Other;
 }
 
@@ -58,7 +58,7 @@ pub struct Grasp {
     pub closed: usize,
     /// How far from it a node may be when it closes (m); `None`: however far.
     pub reach: Option<f64>,
-    /// The force above which a node slips out (N), infinite where there is none.
+    /// The force above which a node slips out in motion (N), infinite where there is none.
     pub strength: f64,
 }
 

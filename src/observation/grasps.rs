@@ -23,10 +23,10 @@ pub(super) fn read(world: &mut World, tool: &str, now: &[(usize, Pose)], reading
                 if mass.get(row) <= 0.0 {
                     continue;
                 }
-                let holds = hold.get(first + 3);
+                let (holds, force) = (hold.get(first + 3), -hold.vector_at(first));
                 reading.slipped += usize::from(ToolHold::has_slipped(holds));
-                if holds == ToolHold::HELD {
-                    let force = -hold.vector_at(first);
+                // who slips out is held to the end of the step
+                if holds == ToolHold::HELD || force != DVec3::ZERO {
                     let begin = rest.0[row] - grasps.reference + u.vector(row) - back * step.vector(row);
                     reading.nodes += 1;
                     reading.force += force;

@@ -54,6 +54,8 @@ pub(crate) fn held_in_step(world: &mut World) -> Vec<HeldNode> {
             for (at, pose) in held {
                 let ends = last.map_or(at_rest, |last| at_rest + last.displacement);
                 hold.set_vector_at(at + 6, pose.inverse(ends));
+                // and bear nothing until then
+                hold.set_vector_at(at, DVec3::ZERO);
             }
             all.extend(last);
         }
@@ -76,15 +78,22 @@ fn follows(grasp: &Grasp, hold: &mut ToolHold, at: usize, closed: bool, of_tool:
         hold.set(at + 3, if grasp.reach.is_none_or(within) { ToolHold::HELD } else { ToolHold::WITHOUT });
         hold.set_vector_at(at + 6, of_tool);
     }
-    hold.get(at + 3) == ToolHold::HELD
+    let holds = hold.get(at + 3) == ToolHold::HELD;
+    if !holds {
+        // whom it has lost it held to the end of the last step
+        hold.set_vector_at(at, DVec3::ZERO);
+    }
+    holds
 }
 
 /// Notes with which force (N) a tool holds a node at the end of the step. Whom it takes more to hold than it can slips
-/// out in the next one.
+/// out in the next one: not at rest, nor where it takes the node in this step, by an impulse.
 pub(crate) fn note_held(world: &mut World, node: &HeldNode, force: DVec3) {
+    let moves = world.resource::<Clock>().relaxation.is_none();
     let Some(mut hold) = world.get_mut::<ToolHold>(node.body) else { return };
     let at = node.at;
-    let mean = 0.5 * (hold.vector_at(at) + force);
+    let before = hold.vector_at(at);
+    let mean = 0.5 * (before + force);
     hold.set_vector_at(at, force);
     let work = hold.get(at + 4) + mean.dot(node.tool_step);
     hold.set(at + 4, work);
@@ -92,8 +101,7 @@ pub(crate) fn note_held(world: &mut World, node: &HeldNode, force: DVec3) {
         let felt = hold.vector_at(at + HOLD_NUMBERS) + force;
         hold.set_vector_at(at + HOLD_NUMBERS, felt);
     }
-    if force.length() > node.strength {
-        hold.set_vector_at(at, DVec3::ZERO);
+    if moves && before != DVec3::ZERO && force.length() > node.strength {
         hold.set(at + 3, ToolHold::SLIPPED);
     }
 }

@@ -62,3 +62,24 @@ fn in_implicit_steps_too() {
     let mut simulation = start(&scene("solver: Implicit(step: 2e-3),"), Precision::F64, 1);
     is_borne("implicit", &mut simulation, (1e-9, 0.02));
 }
+
+/// Whose nodes another tool takes over bears nothing of them until that has opened.
+fn is_handed_over(what: &str, simulation: &mut Simulation) {
+    let weight = 1e-6 * 1000.0 * 9.81;
+    for (time, bears) in [(0.19, [1.0, 0.0]), (0.29, [0.0, 1.0]), (0.4, [1.0, 0.0])] {
+        simulation.advance_to(time).unwrap();
+        for (tool, share) in ["stands", "lifts"].into_iter().zip(bears) {
+            let force = simulation.tool(tool).unwrap().force;
+            near(&format!("{what}: {tool} at {time} s"), -force.z, share * weight, weight, 2e-3);
+        }
+    }
+}
+
+#[test]
+fn who_has_been_taken_over_feels_nothing() {
+    let scene = |more: &str| scene(more).replace("Step(end: 0.25)", "Step(start: 0.2, end: 0.3)");
+    for run in configurations() {
+        is_handed_over(run.name, &mut run.start(&scene("integration: (step: 1e-4),")));
+    }
+    is_handed_over("implicit", &mut start(&scene("solver: Implicit(step: 2e-3),"), Precision::F64, 1));
+}

@@ -34,6 +34,7 @@ fn good_attachments_have_no_complaints() {
 #[test]
 fn what_is_wrong_with_a_grasp_is_told_where_it_stands() {
     let many = format!("{GRASP},").repeat(9);
+    let twice = format!("{GRASP}, {}", GRASP.replace("closed", "body: \"b\", closed"));
     all_are_told(&[
         ("Grasp(tool: \"forcep\", closed: Step())", "5: error: there is no tool `forcep` | did you mean `forceps`?"),
         ("Grasp(tool: \"forceps\")", "`closed`"),
@@ -59,7 +60,16 @@ fn what_is_wrong_with_a_grasp_is_told_where_it_stands() {
         ),
         (&many, "5: error: at most 8 grasps may hold a body"),
         (&many, "5: error: this tool holds the same nodes by attachments[0] already"),
+        (&twice, "5: error: this tool holds the same nodes by attachments[0] already"),
     ]);
+    let weak = GRASP.replace("closed", "strength: 1, closed");
+    let found = told(&weak, "analysis: Static(),");
+    assert!(found.contains("5: warning: nothing breaks in a static analysis"), "{found}");
+    let found = told(&weak, "start: Equilibrium(),");
+    assert!(found.contains("5: warning: nothing breaks on the way to the equilibrium of the start"), "{found}");
+    // it holds nothing until then
+    let found = told(&weak.replace("Step()", "Step(start: 0.05)"), "start: Equilibrium(),");
+    assert!(!found.contains("nothing breaks") && !found.contains("error"), "{found}");
 }
 
 /// A suture of two points of the only body, with some more.

@@ -74,6 +74,16 @@ fn what_sucks_or_takes_twice_is_told() {
         said.contains("error: `rod` takes the same elements by two entries: they would go twice as fast"),
         "{said}"
     );
+    // who is meant counts, and not how it is written
+    let with_body = entry.replacen('(', "(body: \"b\", ", 1);
+    let said = told(ROD, TOUCH, &format!("removal: [{entry}, {with_body}],"));
+    assert!(said.contains("error: `rod` takes the same elements by two entries"), "{said}");
+    let tube = "(shape: Tube(length: 0.2, inner: 0.02, outer: 0.03), at: (0.05, 0.05, 0.11))";
+    let sucks = |bore: &str| format!("(tool: \"rod\", pressure: 100, reach: 0.02{bore})");
+    let both = |bore: &str| told(tube, "", &format!("suction: [{}, {}],", sucks(""), sucks(bore)));
+    let said = both(", bore: 0.02");
+    assert!(said.contains("error: `rod` sucks at this body by suction[0] already"), "{said}");
+    assert_eq!(both(", bore: 0.025"), "");
     let other =
         "(on: Box(min: (0, 0, 0), max: (0.05, 0.1, 0.1)), when: InTool(tool: \"rod\", reach: 0.02, rate: 1e-6))";
     assert_eq!(told(ROD, TOUCH, &format!("removal: [{entry}, {other}],")), "");

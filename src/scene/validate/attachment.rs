@@ -27,7 +27,7 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
             Attachment::Grasp { body, .. } => {
                 grasp(scene_, validator, &path, attachment);
                 if let Some(earlier) =
-                    scene_.attachments[..number].iter().position(|other| is_same_grasp(other, attachment))
+                    scene_.attachments[..number].iter().position(|other| is_same_grasp(scene_, other, attachment))
                 {
                     let message = format!("this tool holds the same nodes by attachments[{earlier}] already");
                     validator.out.error_at(&path, message).note("leave one of both out");
@@ -92,22 +92,22 @@ fn static_strength(scene_: &Scene, validator: &mut Validator, path: &Path, field
         validator
             .out
             .warn_at(path.name(field), "nothing breaks on the way to the equilibrium of the start")
-            .note("what bears more there than it can breaks in the first step");
+            .note("what bears more there than it can breaks in the first steps");
     }
 }
 
 /// Whether two grasps are of one tool and the same nodes.
-fn is_same_grasp(one: &Attachment, other: &Attachment) -> bool {
+fn is_same_grasp(scene_: &Scene, one: &Attachment, other: &Attachment) -> bool {
     match (one, other) {
         (Attachment::Grasp { tool, body, on, .. }, Attachment::Grasp { tool: of, body: with, on: by, .. }) => {
-            (tool, body, on) == (of, with, by)
+            (tool, scene_.body_meant(body), on) == (of, scene_.body_meant(with), by)
         }
         _ => false,
     }
 }
 
 fn grasp(scene_: &Scene, validator: &mut Validator, path: &Path, attachment: &Attachment) {
-    let Attachment::Grasp { tool, body, jaws, reach, strength, .. } = attachment else { return };
+    let Attachment::Grasp { tool, body, jaws, reach, closed, strength, .. } = attachment else { return };
     named(scene_, validator, path, tool);
     body_named(scene_, validator, path, body.as_ref());
     if let Some(problem) = jaws.as_ref().and_then(|shape| shape.problem(0.0)) {
@@ -117,6 +117,9 @@ fn grasp(scene_: &Scene, validator: &mut Validator, path: &Path, attachment: &At
         validator.not_negative(&path.name("reach"), *reach, "m");
     }
     bound(validator, path, "strength", *strength, "N");
+    // what closes later holds nothing on the way to the start
+    let there = strength.is_some() && (scene_.is_static() || closed.value(0.0) >= 0.5);
+    static_strength(scene_, validator, path, "strength", there);
 }
 
 /// Points of bodies that are there, and are two.

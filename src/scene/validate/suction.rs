@@ -20,7 +20,8 @@ pub(super) fn suction(scene_: &Scene, validator: &mut Validator) {
         of_copies(scene_, validator, &path, &suction.body, "sucks at");
         let body = scene_.body_meant(&suction.body);
         let is_this = |other: &Suction| {
-            (&other.tool, other.bore, scene_.body_meant(&other.body)) == (&suction.tool, suction.bore, body)
+            (&other.tool, bore_meant(scene_, other), scene_.body_meant(&other.body))
+                == (&suction.tool, bore_meant(scene_, suction), body)
         };
         if let Some(earlier) = scene_.suction[..number].iter().position(is_this) {
             let message = format!("`{}` sucks at this body by suction[{earlier}] already", suction.tool);
@@ -54,6 +55,15 @@ pub(super) fn suction(scene_: &Scene, validator: &mut Validator) {
             validator.out.error_at(&path, format!("at most {TOOLS_OF_A_BODY} tools may suck at a body"));
         }
     }
+}
+
+/// The radius of a mouth (m): a tube's own where none is given.
+fn bore_meant(scene_: &Scene, suction: &Suction) -> Option<f64> {
+    let own = scene_.tools.get(&suction.tool).and_then(|tool| match &tool.shape {
+        Some(Shape::Tube { inner, .. }) => Some(*inner),
+        _ => None,
+    });
+    suction.bore.or(own)
 }
 
 /// Refuses a mouth that the copies of a body would share, who have nothing in common.

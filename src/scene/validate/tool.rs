@@ -235,8 +235,10 @@ pub(super) fn takes(scene_: &Scene, validator: &mut Validator, path: &Path, remo
     named(scene_, validator, path, tool);
     validator.above_zero(&path.name("reach"), *reach, "m");
     taken_by(validator, path, tool, (*rate, *threshold));
-    let is_this =
-        |other: &&Removal| other.when.tool() == Some(tool) && (&other.body, &other.on) == (&removal.body, &removal.on);
+    let body = scene_.body_meant(&removal.body);
+    let is_this = |other: &&Removal| {
+        other.when.tool() == Some(tool) && (scene_.body_meant(&other.body), &other.on) == (body, &removal.on)
+    };
     if scene_.removal.iter().filter(is_this).count() > 1 {
         let message = format!("`{tool}` takes the same elements by two entries: they would go twice as fast");
         validator.out.error_at(path, message).note("leave one of both out, or give one of them more");
