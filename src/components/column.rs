@@ -75,11 +75,13 @@ impl Reals {
     }
 
     /// One number, widened.
+    #[inline]
     pub fn get(&self, index: usize) -> f64 {
         either!(self, v => v[index].to_f64())
     }
 
     /// Writes one number, rounded.
+    #[inline]
     pub fn set(&mut self, index: usize, value: f64) {
         either!(self, v => v[index] = Scalar::from_f64(value));
     }
@@ -106,21 +108,25 @@ impl Reals {
     }
 
     /// Row `row` of a column of vectors.
+    #[inline]
     pub fn vector(&self, row: usize) -> DVec3 {
         self.vector_at(3 * row)
     }
 
     /// The vector that begins with a number.
+    #[inline]
     pub fn vector_at(&self, index: usize) -> DVec3 {
         either!(self, v => DVec3::new(v[index].to_f64(), v[index + 1].to_f64(), v[index + 2].to_f64()))
     }
 
     /// Writes row `row` of a column of vectors, rounded.
+    #[inline]
     pub fn set_vector(&mut self, row: usize, value: DVec3) {
         self.set_vector_at(3 * row, value);
     }
 
     /// Writes the vector that begins with a number, rounded.
+    #[inline]
     pub fn set_vector_at(&mut self, index: usize, value: DVec3) {
         either!(self, v => {
             for (place, x) in v[index..index + 3].iter_mut().zip(value.to_array()) {

@@ -20,6 +20,7 @@ pub(in crate::simulation) struct Inertia<'a> {
 
 impl Inertia<'_> {
     /// That of a node.
+    #[inline]
     pub fn of(&self, node: usize) -> f64 {
         let damping = if self.damping.is_empty() { 0.0 } else { self.per_damping * self.damping.get(node) };
         self.per_mass * self.mass.get(node) + damping
@@ -59,6 +60,7 @@ impl Motion {
     }
 
     /// The velocity before (m/s), to the digits of the run.
+    #[inline]
     pub fn velocity(&self, axis: usize) -> f64 {
         self.rate * self.step.get(axis)
     }
@@ -76,6 +78,7 @@ impl Motion {
 
     /// The velocity (m/s) and acceleration (m/s²) at the end of a step of h, of an axis that is so far from y then (m),
     /// and had a velocity and an acceleration before.
+    #[inline]
     pub fn arrival(
         &self,
         formula: &Formula,

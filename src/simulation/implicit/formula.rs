@@ -51,16 +51,19 @@ impl Formula {
     }
 
     /// The acceleration at the end (m/s²), of h, w − u − h v (m) and the acceleration before.
+    #[inline]
     pub fn acceleration(&self, h: f64, moved: f64, before: f64) -> f64 {
         self.of_displacement * moved / (h * h) + self.of_acceleration * before
     }
 
     /// The velocity at the end (m/s), of that before and both accelerations.
+    #[inline]
     pub fn velocity(&self, h: f64, before: f64, accelerations: [f64; 2]) -> f64 {
         before + h * (self.before * accelerations[0] + self.after * accelerations[1])
     }
 
     /// Whether it is that of rest.
+    #[inline]
     pub fn is_of_rest(&self) -> bool {
         self.of_displacement == 0.0
     }
@@ -73,12 +76,14 @@ impl Formula {
 
     /// What a displacement of 1 m changes of the equation of an axis (N/m), beside forces: with its mass (kg) and
     /// damping coefficient (kg/s).
+    #[inline]
     pub fn inertia(&self, h: f64, mass: f64, damping: f64) -> f64 {
         let per_displacement = self.of_displacement / (h * h);
         ((1.0 - self.alpha_m) * mass + (1.0 - self.alpha_f) * damping * h * self.after) * per_displacement
     }
 
     /// Inertia and damping of an axis (N), of velocities and accelerations before and after.
+    #[inline]
     pub fn inertial_force(&self, mass: f64, damping: f64, velocities: [f64; 2], accelerations: [f64; 2]) -> f64 {
         let between = |[before, after]: [f64; 2], alpha: f64| (1.0 - alpha) * after + alpha * before;
         mass * between(accelerations, self.alpha_m) + damping * between(velocities, self.alpha_f)

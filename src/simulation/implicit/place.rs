@@ -30,29 +30,34 @@ impl<'a> Place<'a> {
     }
 
     /// w − y of an axis (m).
+    #[inline]
     pub fn correction(&self, axis: usize) -> f64 {
         let beyond = self.beyond.map_or(0.0, |(share, direction)| share * direction.get(axis));
         self.correction.get(axis) + beyond
     }
 
     /// w of an axis (m), to the digits of the run.
+    #[inline]
     pub fn displacement(&self, axis: usize) -> f64 {
         self.motion.predicted(axis, self.h) + self.correction(axis)
     }
 
     /// w − u of an axis (m).
+    #[inline]
     pub fn moved(&self, axis: usize) -> f64 {
         let Self { motion, h, .. } = self;
         if motion.free[axis] { h * motion.velocity(axis) + self.correction(axis) } else { self.correction(axis) }
     }
 
     /// The velocity (m/s) and acceleration (m/s²) of an axis there, that had an acceleration before.
+    #[inline]
     pub fn arrival(&self, axis: usize, before: f64) -> (f64, f64) {
         let Self { formula, h, motion, .. } = self;
         motion.arrival(formula, axis, *h, (self.correction(axis), motion.velocity(axis), before))
     }
 
     /// The step (m) that the velocity of an axis there is; at rest the way from where the search began.
+    #[inline]
     fn step(&self, axis: usize, before: f64) -> f64 {
         if self.formula.is_of_rest() { self.moved(axis) } else { self.h * self.arrival(axis, before).0 }
     }

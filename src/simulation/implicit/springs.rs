@@ -54,6 +54,11 @@ impl Springs {
         }
     }
 
+    /// Adds their forces to loads (N).
+    pub fn load(&self, external: &mut Reals) {
+        self.touching.iter().for_each(|spring| spring.add(spring.force, external));
+    }
+
     /// Adds a share of their part of K p (N) to that of the rest, where an axis that moves by 1 m makes a step of so
     /// many m.
     pub fn add_product(&self, share: f64, step: f64, p: &Reals, image: &mut Reals) {

@@ -146,6 +146,7 @@ impl Implicit {
         if clock.step == 0 {
             begin(&mut trial, motion, &mut space.net, &formula, BEGINS * h)?;
             kept.forces.read(trial.world, axes);
+            trial.springs.load(&mut kept.forces.external);
         }
         let times = [clock.time_at(clock.step), clock.time_at(clock.step + 1)];
         trial.world.resource_mut::<Signals>().evaluate((times[1], times[1]), times);
@@ -183,10 +184,12 @@ fn set_trying(world: &mut World, trying: bool) {
     }
 }
 
-/// Forces and accelerations at the beginning of the motion, with the loads just after it (s).
+/// Forces and accelerations at the beginning of the motion, with the loads just after it (s), and what touches there.
 fn begin(trial: &mut Trial<'_>, motion: &Motion, net: &mut Reals, formula: &Formula, after: f64) -> Result<(), Lost> {
     trial.world.resource_mut::<Signals>().evaluate((after, after), [0.0, 0.0]);
+    Springs::seek(trial.world)?;
     trial.present_forces(net)?;
+    trial.springs.press(1.0, &motion.free, net);
     for (body, range) in trial.axes.each().filter(|_| formula.needs_acceleration()) {
         let Some(mut accelerations) = trial.world.get_mut::<Acceleration>(body) else { continue };
         for axis in range.clone().filter(|&axis| motion.free[axis]) {

@@ -71,6 +71,10 @@ impl Touched {
                 left[count * i + j] = product + f64::from(u8::from(i == j));
             }
         }
+        let (mut of_left, mut of_right) = (vec![0.0; count], vec![0.0; count]);
+        let less = |row: &mut [f64], factor: f64, other: &[f64]| {
+            row.iter_mut().zip(other).for_each(|(entry, other)| *entry -= factor * other);
+        };
         for k in 0..count {
             let pivot = (k..count).max_by(|&a, &b| left[count * a + k].abs().total_cmp(&left[count * b + k].abs()))?;
             for j in 0..count {
@@ -81,15 +85,17 @@ impl Touched {
             if !per_pivot.is_finite() {
                 return None;
             }
+            let row = |i: usize| count * i..count * (i + 1);
+            of_left.copy_from_slice(&left[row(k)]);
+            of_right.copy_from_slice(&right[row(k)]);
             for i in (0..count).filter(|&i| i != k) {
                 let factor = left[count * i + k] * per_pivot;
                 if factor != 0.0 {
-                    (k..count).for_each(|j| left[count * i + j] -= factor * left[count * k + j]);
-                    (0..count).for_each(|j| right[count * i + j] -= factor * right[count * k + j]);
+                    less(&mut left[row(i)][k..], factor, &of_left[k..]);
+                    less(&mut right[row(i)], factor, &of_right);
                 }
             }
-            (0..count).for_each(|j| right[count * k + j] *= per_pivot);
-            (k..count).for_each(|j| left[count * k + j] *= per_pivot);
+            right[row(k)].iter_mut().chain(&mut left[row(k)][k..]).for_each(|entry| *entry *= per_pivot);
         }
         // symmetric to the last bit, as what conjugate gradients are preconditioned with must be
         let mean = |i: usize, j: usize| 0.5 * (right[count * i + j] + right[count * j + i]);
