@@ -212,6 +212,14 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
     return both;
 }
 
+// What holds a point: the static coefficient where it stuck in the last step, or touched nothing and does not slip.
+fn friction_of(meets: u32, parts: Parts, normal: vec3<f32>, state: f32) -> f32 {
+    let before = goes(parts, LAST);
+    let still = length(before - normal * dot(normal, before)) <= STILL * meeting_number(meets, EDGE);
+    let is_held = state == STICKS || (state != SLIDES && still);
+    return meeting_number(meets, select(2u, 1u, is_held));
+}
+
 @compute @workgroup_size(64)
 fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = row(id, groups);
@@ -226,7 +234,6 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     let before = surface_touch[at + 3u];
     let state = surface_touch[at + 4u];
     let gap_before = surface_touch[at + 5u];
-    let friction_word = select(2u, 1u, state == STICKS);
     begin_none(2u * point);
     begin_none(2u * point + 1u);
     var allowed = 0.0;
@@ -246,7 +253,7 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
         }
         allowed = max(min(before + min(outside_by - expected, 0.0) + settling, 0.0), min(outside_by, 0.0));
         let gap = max(outside_by - allowed, -OUT * edge);
-        let friction = meeting_number(meets, friction_word);
+        let friction = friction_of(meets, parts, both.first.normal, state);
         let begun = Begun(both.first.normal, gap, outside_by, allowed, SHARES * edge, friction, slip);
         if meets_it(meets, parts, begun) {
             begin(2u * point, meets, parts, begun);
@@ -259,7 +266,7 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
         let within = SHARES * meeting_number(meets, EDGE);
         let parts = parts_of(point, both.second, place);
         let second = gap_of(both.second, parts, place) - meeting_number(meets, 3u);
-        let friction = meeting_number(meets, friction_word);
+        let friction = friction_of(meets, parts, both.second.normal, state);
         let begun = Begun(both.second.normal, max(second, -settling), second, 0.0, within, friction, vec3<f32>(0.0));
         if meets_it(meets, parts, begun) {
             begin(2u * point + 1u, meets, parts, begun);

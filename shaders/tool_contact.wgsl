@@ -16,6 +16,7 @@ const STICKS: f32 = 1.0;
 const SLIDES: f32 = 2.0;
 const TURNS: u32 = 12u;
 const SETTLED: f32 = 1e-7; // changes of a turn, in edges, that are none
+const STILL: f32 = 1e-6; // what is still slips by no more in a step, in edges
 
 struct Touch {
     normal: vec3<f32>,
@@ -70,7 +71,7 @@ fn surface_of(tool: u32, touch: ptr<function, Touch>, at: vec3<f32>) -> vec4<f32
     return distance_to(tools[tool], at);
 }
 
-fn predict(tool: u32, place: vec3<f32>, before: vec3<f32>, predicted: vec3<f32>, sticks: bool) -> Touch {
+fn predict(tool: u32, place: vec3<f32>, before: vec3<f32>, predicted: vec3<f32>, state: f32) -> Touch {
     let at = tools[tool].signal;
     let pose = array<vec4<f32>, 3>(step.signals[at], step.signals[at + 1u], step.signals[at + 2u]);
     let change = array<vec4<f32>, 3>(step.signals[at + 3u], step.signals[at + 4u], step.signals[at + 5u]);
@@ -96,7 +97,6 @@ fn predict(tool: u32, place: vec3<f32>, before: vec3<f32>, predicted: vec3<f32>,
     touch.target_gap = allowed;
     touch.outwards = vec3<f32>(0.0);
     touch.tool_step = vec3<f32>(dot(change[0], at_tool), dot(change[1], at_tool), dot(change[2], at_tool));
-    touch.friction = select(tools[tool].sliding, tools[tool].sticking, sticks);
     touch.tangential = vec3<f32>(0.0);
     touch.push = 0.0;
     touch.slides = true;
@@ -111,6 +111,10 @@ fn predict(tool: u32, place: vec3<f32>, before: vec3<f32>, predicted: vec3<f32>,
             tools[tool].share, tools[tool].damping, now.w, dot(touch.normal, before - touch.tool_step));
         touch.touches = touch.gap < 0.0;
     }
+    // what was not at the tool and does not slip along it is held as what stuck is
+    let still = length(along_surface(before - touch.tool_step, touch.normal)) <= STILL * limits.edge;
+    let is_held = state == STICKS || (state != SLIDES && still);
+    touch.friction = select(tools[tool].sliding, tools[tool].sticking, is_held);
     return touch;
 }
 
@@ -148,13 +152,13 @@ fn tool_contact(i: u32, node: u32) {
     var touched = 0u;
     for (var tool = 0u; tool < TOOLS; tool++) {
         let at_tool = first + NUMBERS * tool;
-        let stuck = tool_touch[at_tool + 3u] == STICKS;
+        let state = tool_touch[at_tool + 3u];
         for (var k = 0u; k < 4u; k++) {
             tool_touch[at_tool + k] = 0.0;
         }
         found[tool].touches = false;
         if is_active && ((bits >> tool) & 1u) == 1u {
-            found[tool] = predict(tool, place, of_node.before, predicted, stuck);
+            found[tool] = predict(tool, place, of_node.before, predicted, state);
             if found[tool].touches {
                 touched++;
             }

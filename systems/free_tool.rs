@@ -6,6 +6,7 @@ use super::grasp::Grip;
 use super::node_slices::{MetColumns, NodeSlices, SlicedColumns, note_farther};
 use super::repeat::Repeat;
 use super::system::{Phase, System};
+use super::tool_contact::STILL;
 use crate::backend::cpu::{Foreseen, IntegrationCoefficients};
 use crate::components::*;
 use crate::error::{Criterion, Error, Instability};
@@ -172,6 +173,7 @@ impl ToolStep<'_> {
         let center = tool.pose(&self.free.after(time_step, &tool.inertia)).place(center);
         // what comes to touch a tool that sticks is held as that is
         let sticks = touched.iter().any(|touch| touch.sticks);
+        let spin = self.before.spin(&tool.inertia);
         let (met, first) = (&tool.meets[number], all.len());
         let reach = (radius + met.edge) * (radius + met.edge);
         let nodes = NodeSlices::<T>::of(nodes);
@@ -185,9 +187,14 @@ impl ToolStep<'_> {
             // what touched is in the order of nodes
             let known = touched.binary_search_by_key(&node, |touch| touch.node);
             let known = known.ok().map(|place| &touched[place]);
-            let stuck = known.map_or(sticks, |touch| touch.sticks);
-            let friction = met.friction[usize::from(!stuck)];
             let (arm, out) = (place - self.before.place, met.settling * time_step);
+            // nor does what was still let go
+            let still = || {
+                let slip = foreseen.before - (self.before.velocity + spin.cross(arm)) * time_step;
+                slip.length() <= STILL * met.edge
+            };
+            let is_held = known.map_or_else(|| sticks || still(), |touch| touch.sticks);
+            let friction = met.friction[usize::from(!is_held)];
             let target = known.map(|touch| touch.target);
             all.push(Near { node, place, foreseen, arm, friction, edge: met.edge, swept: met.swept, target, out });
         }

@@ -136,8 +136,8 @@ struct Surface {
     places_kept: Vec<u32>,
     /// Points and triangles that are near each other at rest: never in each other's way.
     apart: Vec<(u32, u32)>,
-    /// Elements that are there; `None` before anything is known.
-    elements: Option<usize>,
+    /// A number for which elements are there; `None` before anything is known.
+    elements: Option<u64>,
     /// One a body.
     trees: Vec<Tree>,
     /// How deep the inside of the shallowest body goes (m), and how much deeper that of each (m).

@@ -1,5 +1,6 @@
 //! `tool_contact`: rigid tools keep nodes outside. `shaders/tool_contact.wgsl` is its twin.
 
+mod device;
 mod in_step;
 mod row;
 mod solved;
@@ -10,16 +11,10 @@ use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
 use super::rows::Rows;
-use super::surface_contact::note_farther;
 use super::system::{Phase, System};
-use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, Foreseen, NodeColumns};
-use crate::backend::kernel::{Uniform, uniform};
-use crate::backend::node_stage::NodeStage;
 use crate::components::*;
 use crate::math::{Extremes, See, SimdScalar};
-use crate::shader;
-use bevy_ecs::prelude::*;
 use glam::DVec3;
 pub use in_step::ContactStep;
 use in_step::ToolInStep;
@@ -47,12 +42,15 @@ pub fn system() -> System {
             (count > 0).then(|| if count == 1 { "1 tool at a body".into() } else { format!("{count} tools at bodies") })
         },
     )
-    .on_nodes(stages)
+    .on_nodes(device::stages)
 }
 
 /// What a tool and a node do that touch.
 const STICKS: f64 = 1.0;
 const SLIDES: f64 = 2.0;
+
+/// A point slips by no more than this in a step that is still, in edges.
+pub(in crate::systems) const STILL: f64 = 1e-6;
 
 /// How often tools at one node take turns.
 const TURNS: usize = 12;
@@ -182,9 +180,10 @@ impl ToolContacts {
         nodes: &mut NodeColumns<'_, T>,
         values: &mut [T],
     ) {
-        let mut stuck = 0_u32;
+        let (mut stuck, mut slid) = (0_u32, 0_u32);
         for (tool, of_tool) in values.chunks_exact_mut(self.numbers_a_tool()).enumerate() {
             stuck |= u32::from(of_tool[3] == T::from_f64(STICKS)) << tool;
+            slid |= u32::from(of_tool[3] == T::from_f64(SLIDES)) << tool;
             of_tool[..4].fill(T::default());
         }
         if nodes.inertia()[row] <= T::default() || near == 0 {
@@ -192,15 +191,16 @@ impl ToolContacts {
         }
         let Foreseen { before, step: predicted, free, to_force } = nodes.foresee(&step.coefficients, row);
         let at = (place, before, predicted);
+        let was = |tool: usize| [stuck, slid].map(|bits| bits >> tool & 1 == 1);
         let (mut one, mut several);
         let all = if near.is_power_of_two() {
             let tool = near.trailing_zeros() as usize;
-            one = self.predict(step, tool, at, stuck >> tool & 1 == 1);
+            one = self.predict(step, tool, at, was(tool));
             one.as_mut_slice()
         } else {
             several = Touching::new();
             let near = (0..self.tools.len()).filter(|tool| near >> tool & 1 == 1);
-            several.extend(near.filter_map(|tool| self.predict(step, tool, at, stuck >> tool & 1 == 1)));
+            several.extend(near.filter_map(|tool| self.predict(step, tool, at, was(tool))));
             &mut several[..]
         };
         let pushed = self.push_apart(step, all, (place, predicted), free);
@@ -238,13 +238,14 @@ impl ToolContacts {
     }
 
     /// What a tool does to a node that is at a place (m, from the reference), came there by a step (m) and goes on by
-    /// another; `None` where it ends an edge or more from the tool.
+    /// another; `None` where it ends an edge or more from the tool. What stuck at it in the last step is held by the
+    /// static coefficient, and what was not at it and does not slip along it.
     fn predict(
         &self,
         step: &ContactStep,
         tool: usize,
         (place, before, predicted): (DVec3, DVec3, DVec3),
-        stuck: bool,
+        [stuck, slid]: [bool; 2],
     ) -> Option<Touch> {
         let contact = &self.tools[tool];
         let ToolInStep { pose, earlier, change, .. } = &step.tools[tool];
@@ -256,12 +257,16 @@ impl ToolContacts {
         if distance > self.edge {
             return None;
         }
-        let [sticking, sliding] = contact.friction;
-        let friction = if stuck { sticking } else { sliding };
+        let friction = |normal: DVec3, tool_step: DVec3| {
+            let still = || along_surface(before - tool_step, normal).length() <= STILL * self.edge;
+            let is_held = stuck || !slid && contact.friction[0] != contact.friction[1] && still();
+            contact.friction[usize::from(!is_held)]
+        };
         if let Some(spring) = contact.spring {
             let (distance, normal) = contact.geometry.distance(here);
             let (normal, tool_step) = (earlier.rotation * normal, change.place(here));
             let gap = spring.gap(distance, normal.dot(before - tool_step));
+            let friction = friction(normal, tool_step);
             let still = Touch { tool, normal, gap, target: 0.0, tool_step, friction, ..Touch::default() };
             return (gap < 0.0).then_some(Touch { slides: true, springs: true, ..still });
         }
@@ -278,7 +283,7 @@ impl ToolContacts {
             gap: distance - target,
             target,
             tool_step,
-            friction,
+            friction: friction(normal, tool_step),
             slides: true,
             plane,
             ..Touch::default()
@@ -347,49 +352,4 @@ const SETTLED: f64 = 1e-7;
 /// The part of a vector along a surface.
 fn along_surface(vector: DVec3, normal: DVec3) -> DVec3 {
     vector - normal * vector.dot(normal)
-}
-
-/// What is the same for all tools of a body.
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-struct Limits {
-    edge: f32,
-    settling: f32,
-    counts_work: u32,
-}
-uniform!(Limits { edge, settling, counts_work });
-
-/// How many tools there are, and how many numbers of each.
-fn counts(contacts: &ToolContacts) -> String {
-    let (tools, numbers) = (contacts.tools.len(), contacts.numbers_a_tool());
-    format!("const TOOLS: u32 = {tools}u;\nconst NUMBERS: u32 = {numbers}u;\n")
-}
-
-/// One stage for each body that tools may touch.
-fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
-    let all: Vec<(Entity, ToolContacts)> =
-        world.query::<(Entity, &ToolContacts)>().iter(world).map(|(body, contacts)| (body, contacts.clone())).collect();
-    all.into_iter().map(|(body, contacts)| stage(body, &contacts, world, buffers)).collect()
-}
-
-fn stage(body: Entity, contacts: &ToolContacts, world: &mut World, buffers: &mut dyn Buffers) -> NodeStage {
-    let of = ToolNodes {
-        system: "tool_contact",
-        twin: shader!("tool_contact"),
-        counts: counts(contacts),
-        tools: contacts.tools.iter().collect(),
-        reference: contacts.reference,
-        rows: &contacts.rows,
-        masks: &contacts.masks,
-        nodes: "touchable",
-        column: ToolTouch::NAME,
-    };
-    let stage = tool_stage(body, of, world, buffers);
-    let counts_work = u32::from(world.resource::<Clock>().relaxation.is_none());
-    let limits = Limits { edge: contacts.edge as f32, settling: contacts.settling as f32, counts_work };
-    let stage = stage.own(shader!("contact_spring"));
-    let (text, columns) = note_farther(body, world);
-    let stage = text.into_iter().fold(stage, NodeStage::own);
-    let stage = columns.iter().fold(stage, |stage, column| stage.column(column, buffers.column(body, column)));
-    stage.bind_uniform::<Limits>("limits", buffers.uniform("tool contact".into(), &limits.bytes()))
 }

@@ -3,6 +3,7 @@
 use super::{Repeat, Response, ToolStep};
 use crate::backend::cpu::Foreseen;
 use crate::components::{FreeTool, FreeTouch, Pose};
+use crate::systems::tool_contact::STILL;
 use crate::systems::tool_contact::sweep::{self, Plane, first_touch};
 use glam::{DMat3, DVec3};
 
@@ -11,9 +12,6 @@ const SWEEPS: usize = 200;
 
 /// Changes of a sweep, in edges, that are none.
 const SETTLED: f64 = 1e-9;
-
-/// A node slips by no more than this in a step that sticks, in edges.
-const STILL: f64 = 1e-6;
 
 /// What [`solve`] repeats for each tool.
 pub(super) fn sweeps() -> Repeat {

@@ -2,12 +2,13 @@
 
 use super::body_slices::{BodySlices, set_vector, vector_at};
 use super::faced::face;
-use super::meet::{FACES, FREE, STICKS};
+use super::meet::{FACES, FREE, SLIDES, STICKS};
 use super::{Meeting, Surface, SurfaceContacts, crossings};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
 use crate::contact::{Beginning, Contact, ContactSet, Faced, Facing, Parts, Point};
 use crate::math::Scalar;
+use crate::systems::tool_contact::STILL;
 use glam::{DVec3, DVec4};
 
 /// How far a point that is inside comes out in a step at most, in the smaller edges of both bodies: elements of neither
@@ -236,13 +237,20 @@ impl Nodes<'_> {
     ) {
         let surface = &contacts.surface;
         let point = &surface.points[number as usize];
-        let (stuck, slip) = (touch[4].to_f64() == STICKS, vector_at(touch, 0));
+        let (state, slip) = (touch[4].to_f64(), vector_at(touch, 0));
         let both = [(&faced.first, true), (&faced.second, false)];
         for (facing, is_first) in both.into_iter().filter_map(|(facing, is_first)| Some((facing.as_ref()?, is_first))) {
             let body = surface.triangles.bodies[facing.triangle as usize];
             let Some(meeting) = contacts.meeting(point.body, body) else { continue };
             let Meeting { friction, spring, edge, .. } = meeting;
-            let friction = if stuck { friction[0] } else { friction[1] };
+            let parts = if is_first { of_first } else { self.parts(surface, point, facing) };
+            // what touched nothing and does not slip is held by the static coefficient
+            let still = || {
+                let before = parts.step(self.earlier);
+                (before - facing.normal * facing.normal.dot(before)).length() <= STILL * edge
+            };
+            let is_held = state == STICKS || state != SLIDES && friction[0] != friction[1] && still();
+            let friction = friction[usize::from(!is_held)];
             // of another face nothing is known of how it got there
             let (outside, allowed, slip) = match is_first {
                 true => (outside, allowed, slip),
@@ -252,7 +260,6 @@ impl Nodes<'_> {
                 true => (outside - allowed).max(-OUT * edge),
                 false => outside.max(-meeting.settling(clock)),
             };
-            let parts = if is_first { of_first } else { self.parts(surface, point, facing) };
             let within = if point.triangle.is_some() { SHARES * edge } else { 0.0 };
             self.add(
                 batch,

@@ -16,6 +16,7 @@ use crate::backend::step::with_step;
 use crate::components::*;
 use crate::shader;
 use crate::systems::integrate::damping_fragment;
+use crate::systems::tool_contact::STILL;
 use bevy_ecs::prelude::*;
 
 /// A body's part of the surfaces.
@@ -89,7 +90,8 @@ impl Shared {
 
     /// With what is kept of points of a kind.
     fn with_touch(&self, kernel: Kernel, points: &Points, buffers: &mut dyn Buffers) -> Kernel {
-        let states = [("FREE", FREE), ("FACES", FACES), ("STICKS", STICKS), ("SLIDES", SLIDES), ("OUT", OUT)];
+        let states =
+            [("FREE", FREE), ("FACES", FACES), ("STICKS", STICKS), ("SLIDES", SLIDES), ("OUT", OUT), ("STILL", STILL)];
         let states = states.map(|(name, number)| format!("const {name}: f32 = {number:?};\n")).concat();
         let (rows, place) = match points.of_faces {
             true => ("", "point - surface.first"),

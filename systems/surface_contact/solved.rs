@@ -210,9 +210,8 @@ fn add<T: Scalar>(
     let kept = contacts.kept(point);
     let touch = bodies[kept.body].kept(kept);
     let state = touch[4].to_f64();
-    let (touched, sticks) = (first && state >= STICKS, first && state == STICKS);
-    let slip = if touched { vector_at(touch, 0) } else { DVec3::ZERO };
-    let friction = meeting.friction[usize::from(!sticks)];
+    let slip = if first && state >= STICKS { vector_at(touch, 0) } else { DVec3::ZERO };
+    let friction = meeting.friction[usize::from(state == SLIDES)];
     let (mut parts, mut mass) = (Parts::default(), 0.0);
     for &(node, weight) in &pair.nodes {
         parts.add(gathered.slots[node as usize], weight);

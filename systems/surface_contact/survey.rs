@@ -44,8 +44,7 @@ pub(super) fn follow(
     let mut is_other = false;
     if contacts.surface.elements.is_none() || blocks.iter().any(|alive| alive.is_changed()) {
         let all = contacts.bodies.iter().filter_map(|&body| authorings.get(body).ok());
-        let left = |&block: &Entity| blocks.get(block).map_or(0, |alive| alive.iter().filter(|&&is| is == 1).count());
-        let elements = Some(all.flat_map(|authoring| &authoring.blocks).map(left).sum());
+        let elements = Some(marks(all.flat_map(|authoring| &authoring.blocks), blocks));
         if contacts.surface.elements != elements {
             let figures = contacts.surface.figures;
             contacts.surface = Surface { elements, figures, ..Surface::default() };
@@ -55,6 +54,15 @@ pub(super) fn follow(
         }
     }
     remember(contacts, bodies, is_other);
+}
+
+/// A number for which elements are there, another one of as many others: whoever goes back in time may find those.
+fn marks<'a>(blocks: impl Iterator<Item = &'a Entity>, alive: &Query<Ref<Alive>>) -> u64 {
+    let mut marks: u64 = 0xcbf2_9ce4_8422_2325;
+    for alive in blocks.filter_map(|&block| alive.get(block).ok()) {
+        marks = alive.iter().fold(marks, |marks, &is| (marks ^ u64::from(is == 1)).wrapping_mul(0x100_0000_01b3));
+    }
+    marks
 }
 
 /// Clears what nodes bore and touched, and what points of faces touched, that are on no surface any more: nobody else

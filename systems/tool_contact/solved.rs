@@ -134,7 +134,7 @@ impl ToolContacts {
         }
         let relative = at.step - change.place(of_tool);
         let press = spring.press(springs, at.mass, distance, [normal.dot(relative), step.time]);
-        let friction = contact.friction[usize::from(last.state != STICKS)];
+        let friction = contact.friction[usize::from(last.state == SLIDES)];
         let slip = along_surface(relative, normal) - along_surface(last.force, normal) / press.stiffness;
         let rubbing = press.rub(normal, slip, friction);
         let (force, slopes) = press.with(normal, &rubbing);

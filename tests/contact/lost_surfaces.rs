@@ -1,6 +1,6 @@
 //! What points bore and touched whose surface is gone, or who face nothing any more.
 
-use crate::bits::start;
+use crate::bits::{bits, start};
 use sinew::components::{ContactForce, FaceTouch, Precision, SurfaceTouch};
 use sinew::glam::DVec3;
 use sinew::{Simulation, Snapshot};
@@ -13,6 +13,19 @@ const SCENE: &str = "(duration: 0.03, bodies: {
     materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))},
     constraints: [Fixed(body: \"low\", on: Set(\"z0\"))],
     removal: [(body: \"high\", on: Box(min: (0, 0, 0.019), max: (0.02, 0.02, 0.0236)), when: During(start: 0.008, end: 0.02))],
+    contacts: [Between(bodies: (\"low\", \"high\"), friction: 0.3POINTS)])";
+
+/// A block that lies on another, of which one or the other end of the upper layer goes.
+const EITHER: &str = "(duration: 0.06, bodies: {
+        \"low\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (4, 4, 4)), material: \"m\"),
+        \"high\": (mesh: Box(size: (0.02, 0.02, 0.012), cells: (3, 3, 3)), material: \"m\", translate: (0.001, 0.001, 0.0201))},
+    materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 10)},
+    constraints: [Fixed(body: \"low\", on: Set(\"z0\"))], loads: [Gravity(acceleration: (0, 0, -20), body: \"high\")],
+    tools: {\"t\": (shape: Sphere(radius: 1e-3), at: (0.01, 0.01, 0.05))},
+    removal: [(body: \"low\", on: Box(min: (-1, -1, 0.0149), max: (0.0051, 1, 1)),
+            when: InTool(tool: \"t\", reach: 0.1, rate: 1e-3, curve: Input(name: \"left\"), crumb: 0)),
+        (body: \"low\", on: Box(min: (0.0149, -1, 0.0149), max: (1, 1, 1)),
+            when: InTool(tool: \"t\", reach: 0.1, rate: 1e-3, curve: Input(name: \"right\"), crumb: 0))],
     contacts: [Between(bodies: (\"low\", \"high\"), friction: 0.3POINTS)])";
 
 fn bytes(simulation: &mut Simulation) -> Vec<u8> {
@@ -79,5 +92,35 @@ fn a_run_goes_on_from_any_step_while_touching_surfaces_go() {
             let found = Snapshot::from_bytes(&bytes(&mut resumed)).unwrap();
             assert_eq!(to.differences(&found), Vec::<String>::new(), "to step {}, {precision:?}", resumed.step_count());
         }
+    }
+}
+
+/// Whoever goes back to as many other elements finds their surface: the one of before stayed.
+#[test]
+fn a_run_goes_back_to_as_many_other_elements() {
+    for (precision, points) in [(Precision::F64, ""), (Precision::F32, ", points: Faces")] {
+        let scene = &EITHER.replace("POINTS", points);
+        let without = |end: &str| {
+            let mut simulation = start(scene, precision, 1);
+            simulation.set_input(end, 1.0).unwrap();
+            simulation.advance(35).unwrap();
+            let alive = simulation.fields("low").unwrap().alive.iter().map(|alive| *alive == 1).collect::<Vec<bool>>();
+            (simulation, alive)
+        };
+        let ((mut whole, one), (mut other, another)) = (without("left"), without("right"));
+        let count = |alive: &[bool]| alive.iter().filter(|alive| !**alive).count();
+        assert!(one != another && count(&one) == 24 && count(&another) == 24, "{one:?}, {another:?}");
+        let kept = whole.snapshot().unwrap();
+        other.restore(&kept).unwrap();
+        for simulation in [&mut whole, &mut other] {
+            let mut touched = 0;
+            for _ in 0..40 {
+                simulation.advance(1).unwrap();
+                touched = touched.max(simulation.contact("low").unwrap().nodes);
+            }
+            assert!(touched > 3, "{precision:?}: {touched}");
+        }
+        let [wanted, found] = [&mut whole, &mut other].map(|simulation| bits(simulation, &["low", "high"]));
+        assert!(wanted == found, "{precision:?}{points}");
     }
 }

@@ -6,6 +6,7 @@
 mod asleep;
 mod attachments;
 mod bits;
+mod blades;
 #[path = "../physics/configurations.rs"]
 mod configurations;
 mod contact_fields;
@@ -15,6 +16,7 @@ mod edges;
 mod edges_apart;
 mod elements_under_tools;
 mod faces;
+mod first_touch;
 #[allow(dead_code)]
 #[path = "../physics/frames.rs"]
 mod frames;
@@ -27,6 +29,7 @@ mod glue_partners;
 mod glued_grasps;
 mod grasp;
 mod grasped_surfaces;
+mod grip_strength;
 mod held_by_tools;
 mod implicit;
 mod implicit_books;

@@ -266,7 +266,9 @@ fn tools(summary: &Summary, page: &mut Page) {
             true => format!(", the deepest {} inside", quantity(reading.penetration, "m")),
             false => String::new(),
         };
-        let sucks = match reading.suction.length() > 0.0 {
+        // a pressure that dies away is none
+        let is_sucking = reading.suction.length() > 1e-9 * reading.force.length();
+        let sucks = match is_sucking {
             true => format!(", {} of it what it sucks", quantity(reading.suction.length(), "N")),
             false => String::new(),
         };
@@ -276,7 +278,7 @@ fn tools(summary: &Summary, page: &mut Page) {
             0 => String::new(),
             count => format!(", {} slipped out", counted(count as u64, "node")),
         };
-        let but = if reading.suction.length() > 0.0 { ", the work of what it sucks left out" } else { "" };
+        let but = if is_sucking { ", the work of what it sucks left out" } else { "" };
         format!("{name} feels ({x}, {y}, {z}) of {nodes}{slipped}{inside}{sucks}; it did {work}{but}, {loss}")
     });
     page.rows("tools", lines.collect::<Vec<_>>());

@@ -178,7 +178,8 @@ pub enum Contact {
         /// The coefficient of friction.
         #[serde(default)]
         friction: f64,
-        /// The coefficient while nodes stick to the tool; that of `friction` when left out.
+        /// The coefficient while nodes stick to the tool, or come to touch it without slipping; that of `friction` when
+        /// left out.
         #[serde(default)]
         static_friction: Option<f64>,
         /// That the tool is thinner than the faces that it meets, and may slip between nodes: then it is not warned of.
