@@ -56,12 +56,13 @@ fn hold(i: u32, node: u32, number: u32, ends: vec4<f32>) -> vec4<f32> {
         return ends;
     }
     let at = tools[number].signal;
-    let place = bitcast<vec3<f32>>(holdable[i].xyz) + displacement_of(node);
+    let rest = bitcast<vec3<f32>>(holdable[i].xyz);
+    let place = rest + displacement_of(node);
     if open {
         // where the tool was at the beginning of the step
         let earlier = array<vec4<f32>, 3>(step.signals[at] - step.signals[at + 3u],
             step.signals[at + 1u] - step.signals[at + 4u], step.signals[at + 2u] - step.signals[at + 5u]);
-        let y = into_frame(earlier, place);
+        let y = into_frame(earlier, rest, displacement_of(node));
         tool_hold[own + 3u] = select(WITHOUT, HELD, distance_to(tools[number], y).w <= grips[number].reach);
         tool_hold[own + 6u] = y.x;
         tool_hold[own + 7u] = y.y;
@@ -71,7 +72,7 @@ fn hold(i: u32, node: u32, number: u32, ends: vec4<f32>) -> vec4<f32> {
         return ends;
     }
     if ends.w == 1.0 {
-        let y = into_frame(array<vec4<f32>, 3>(step.signals[at], step.signals[at + 1u], step.signals[at + 2u]), ends.xyz);
+        let y = into_frame(array<vec4<f32>, 3>(step.signals[at], step.signals[at + 1u], step.signals[at + 2u]), vec3<f32>(0.0), ends.xyz);
         tool_hold[own + 6u] = y.x;
         tool_hold[own + 7u] = y.y;
         tool_hold[own + 8u] = y.z;

@@ -71,16 +71,23 @@ fn surface_of(tool: u32, touch: ptr<function, Touch>, at: vec3<f32>) -> vec4<f32
     return distance_to(tools[tool], at);
 }
 
-fn predict(tool: u32, place: vec3<f32>, before: vec3<f32>, predicted: vec3<f32>, state: f32) -> Touch {
+fn predict(
+    tool: u32,
+    rest: vec3<f32>,
+    moved: vec3<f32>,
+    before: vec3<f32>,
+    predicted: vec3<f32>,
+    state: f32,
+) -> Touch {
     let at = tools[tool].signal;
     let pose = array<vec4<f32>, 3>(step.signals[at], step.signals[at + 1u], step.signals[at + 2u]);
     let change = array<vec4<f32>, 3>(step.signals[at + 3u], step.signals[at + 4u], step.signals[at + 5u]);
-    let of_tool = into_frame(pose, place + predicted);
+    let of_tool = into_frame(pose, rest, moved + predicted);
     let earlier = array<vec4<f32>, 3>(pose[0] - change[0], pose[1] - change[1], pose[2] - change[2]);
     var touch: Touch;
     touch.swept = false;
     if tools[tool].swept > 0.0 {
-        first_touch(tool, into_frame(earlier, place), of_tool, &touch);
+        first_touch(tool, into_frame(earlier, rest, moved), of_tool, &touch);
     }
     let surface = surface_of(tool, &touch, of_tool);
     var allowed = 0.0;
@@ -89,7 +96,7 @@ fn predict(tool: u32, place: vec3<f32>, before: vec3<f32>, predicted: vec3<f32>,
         if limits.counts_work == 0u {
             out = 0.1 * limits.edge;
         }
-        allowed = min(distance_to(tools[tool], into_frame(earlier, place)).w + out, 0.0);
+        allowed = min(distance_to(tools[tool], into_frame(earlier, rest, moved)).w + out, 0.0);
     }
     let at_tool = vec4<f32>(of_tool, 1.0);
     touch.normal = vec3<f32>(dot(pose[0].xyz, surface.xyz), dot(pose[1].xyz, surface.xyz), dot(pose[2].xyz, surface.xyz));
@@ -102,7 +109,7 @@ fn predict(tool: u32, place: vec3<f32>, before: vec3<f32>, predicted: vec3<f32>,
     touch.slides = true;
     touch.touches = surface.w <= limits.edge;
     if touch.touches && tools[tool].share > 0.0 {
-        let here = into_frame(earlier, place);
+        let here = into_frame(earlier, rest, moved);
         let now = distance_to(tools[tool], here);
         let at_here = vec4<f32>(here, 1.0);
         touch.normal = vec3<f32>(dot(earlier[0].xyz, now.xyz), dot(earlier[1].xyz, now.xyz), dot(earlier[2].xyz, now.xyz));
@@ -119,11 +126,11 @@ fn predict(tool: u32, place: vec3<f32>, before: vec3<f32>, predicted: vec3<f32>,
 }
 
 // Where the node ends by now.
-fn evaluate_again(tool: u32, end: vec3<f32>, before: Touch) -> Touch {
+fn evaluate_again(tool: u32, rest: vec3<f32>, moved: vec3<f32>, before: Touch) -> Touch {
     var touch = before;
     let at = tools[tool].signal;
     let pose = array<vec4<f32>, 3>(step.signals[at], step.signals[at + 1u], step.signals[at + 2u]);
-    let of_tool = into_frame(pose, end);
+    let of_tool = into_frame(pose, rest, moved);
     let surface = surface_of(tool, &touch, of_tool);
     let at_tool = vec4<f32>(of_tool, 1.0);
     touch.normal = vec3<f32>(dot(pose[0].xyz, surface.xyz), dot(pose[1].xyz, surface.xyz), dot(pose[2].xyz, surface.xyz));
@@ -140,7 +147,8 @@ fn along_surface(v: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
 fn tool_contact(i: u32, node: u32) {
     let first = NUMBERS * TOOLS * i;
     let bits = touchable[i].w;
-    let place = bitcast<vec3<f32>>(touchable[i].xyz) + displacement_of(node);
+    let rest = bitcast<vec3<f32>>(touchable[i].xyz);
+    let moved = displacement_of(node);
     let is_active = mass[node] > 0.0;
     var of_node: Foreseen;
     if is_active {
@@ -158,7 +166,7 @@ fn tool_contact(i: u32, node: u32) {
         }
         found[tool].touches = false;
         if is_active && ((bits >> tool) & 1u) == 1u {
-            found[tool] = predict(tool, place, of_node.before, predicted, state);
+            found[tool] = predict(tool, rest, moved, of_node.before, predicted, state);
             if found[tool].touches {
                 touched++;
             }
@@ -176,7 +184,7 @@ fn tool_contact(i: u32, node: u32) {
             }
             let waits = turn > 0u && tools[tool].share > 0.0;
             if turn > 0u && !waits {
-                found[tool] = evaluate_again(tool, place + predicted + sum, found[tool]);
+                found[tool] = evaluate_again(tool, rest, moved + predicted + sum, found[tool]);
             }
             let normal = found[tool].normal;
             let along = dot(normal, free * normal);

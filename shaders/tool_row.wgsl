@@ -34,8 +34,9 @@ fn distance_to(row: ToolRow, y: vec3<f32>) -> vec4<f32> {
         ToolShape(row.kind, row.size_0, row.size_1, row.size_2, row.size_3, row.size_4, row.size_5, row.rounding), y);
 }
 
-// A point of the scene in the frame of a pose whose rows and places are in three slots.
-fn into_frame(rows: array<vec4<f32>, 3>, x: vec3<f32>) -> vec3<f32> {
-    let y = x - vec3<f32>(rows[0].w, rows[1].w, rows[2].w);
+// A point of the scene in the frame of a pose whose rows and places are in three slots, from where it was at rest and
+// how far it has moved since: in this order digits of small motions are kept near a tool that stands still.
+fn into_frame(rows: array<vec4<f32>, 3>, rest: vec3<f32>, moved: vec3<f32>) -> vec3<f32> {
+    let y = (rest - vec3<f32>(rows[0].w, rows[1].w, rows[2].w)) + moved;
     return y.x * rows[0].xyz + y.y * rows[1].xyz + y.z * rows[2].xyz;
 }

@@ -1,9 +1,10 @@
 //! What touches for the first time: at rest it is held by the static coefficient, sliding by the kinetic one.
 
 use crate::configurations::{cpu_and_long_gpu, near};
+use sinew::BackendChoice;
 
 const TABLES: [(&str, &str); 2] = [
-    ("a tool", "tools: {\"table\": (shape: Plane())}, contacts: [Tool(tool: \"table\", FRICTION)],"),
+    ("a tool", "tools: {\"table\": (shape: Plane())}, contacts: [Tool(tool: \"table\", body: \"high\", FRICTION)],"),
     ("a body", "contacts: [Between(bodies: (\"low\", \"high\"), FRICTION)],"),
 ];
 
@@ -11,10 +12,10 @@ const TABLES: [(&str, &str); 2] = [
 /// Beside a tool the body below is far off.
 fn plate(table: &str, law: &str, (along, speed): (f64, f64), solver: &str) -> String {
     let friction = format!("friction: 0.3, static_friction: 0.6{law}");
-    let below = if table.contains("tools") { -0.1 } else { -0.002 };
+    let below = if table.contains("tools") { -0.1 } else { -0.03 };
     format!(
         "(duration: 0.3, {solver} bodies: {{
-            \"low\": (mesh: Box(size: (0.3, 0.04, 0.002), cells: (1, 1, 1), elements: Hex8), material: \"m\", translate: (-0.01, -0.01, {below:?})),
+            \"low\": (mesh: Box(size: (0.3, 0.04, 0.03), cells: (1, 1, 1), elements: Hex8), material: \"m\", translate: (-0.01, -0.01, {below:?})),
             \"high\": (mesh: Box(size: (0.02, 0.02, 0.001), cells: (1, 1, 1), elements: Hex8), material: \"m\", velocity: ({speed:?}, 0, 0))}},
         materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 1e4, poisson: 0.45))}},
         constraints: [Fixed(body: \"low\", on: All)],
@@ -41,7 +42,7 @@ fn a_block_at_rest_is_held_by_the_static_coefficient() {
 /// The same in implicit steps, whose springs give way along the surface as across it.
 #[test]
 fn a_block_at_rest_is_held_in_implicit_steps() {
-    for run in cpu_and_long_gpu() {
+    for run in cpu_and_long_gpu().into_iter().filter(|run| run.options.backend == BackendChoice::Cpu) {
         for (of, table) in TABLES {
             let (law, solver) = (", law: Penalty(share: 10)", "solver: Implicit(step: 0.002, tolerance: 1e-6),");
             let text = plate(table, law, (4.5, 0.0), solver).replace("CURVE", "Smooth(end: 0.1)");
