@@ -72,7 +72,8 @@ fn begin(contact: u32, meets: u32, parts: Parts, begun: Begun) {
     var acts = BY_STEP;
     if share > 0.0 {
         let outside = begun.outside - begun.allowed;
-        gap = spring_gap(share, meeting_number(meets, 5u), outside, dot(begun.normal, goes(parts, LAST)));
+        let outwards = dot(begun.normal, goes(parts, LAST));
+        gap = step.work_factor * spring_gap(share, meeting_number(meets, 5u), outside, outwards);
         acts = BY_SPRING;
     }
     set_vector(contact, NORMAL, begun.normal);

@@ -114,7 +114,7 @@ fn predict(
         let at_here = vec4<f32>(here, 1.0);
         touch.normal = vec3<f32>(dot(earlier[0].xyz, now.xyz), dot(earlier[1].xyz, now.xyz), dot(earlier[2].xyz, now.xyz));
         touch.tool_step = vec3<f32>(dot(change[0], at_here), dot(change[1], at_here), dot(change[2], at_here));
-        touch.gap = spring_gap(
+        touch.gap = step.work_factor * spring_gap(
             tools[tool].share, tools[tool].damping, now.w, dot(touch.normal, before - touch.tool_step));
         touch.touches = touch.gap < 0.0;
     }

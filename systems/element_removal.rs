@@ -21,9 +21,15 @@ use masses::{mass_kernel, recompute};
 use std::borrow::Cow;
 use std::sync::{Mutex, PoisonError};
 
-/// Criteria are looked at in every tenth step: a wave passes a tenth of an element's height in a step, and to look
-/// costs as much as the forces.
+/// Criteria are looked at in every tenth explicit step: a wave passes a tenth of an element's height in a step, and to
+/// look costs as much as the forces.
 pub const CRITERION_STEPS: u64 = 10;
+
+/// How many steps there are from one look at criteria to the next. Implicit steps may be as long as the motion itself,
+/// and each takes forces many times: there it is looked in all of them.
+pub fn criterion_steps(clock: &Clock) -> u64 {
+    if clock.velocities_at_ends { 1 } else { CRITERION_STEPS }
+}
 
 /// At the end of a step, elements go whose time has come or that pass a limit. Their volume and hourglass stiffness
 /// become zero, so that they exert nothing; what their nodes weigh is summed anew, and what they move with where mass
@@ -49,7 +55,7 @@ type BlockQuery<'a> = (
     &'a mut RestShape,
     &'a BlockLaw<f64>,
     Option<&'a FibreDirection>,
-    Option<&'a ViscousMemory>,
+    (Option<&'a MemoryBefore>, Option<&'a ViscousMemory>),
     Option<&'a NodalVolumeChange>,
     &'a mut Alive,
     &'a RemovalStep,
@@ -82,7 +88,7 @@ fn element_removal(
     mut bodies: Query<BodyQuery>,
     loads: Query<(&SceneLoad, &OfBody)>,
 ) -> Result<(), Error> {
-    let is_due = clock.step.is_multiple_of(CRITERION_STEPS);
+    let is_due = clock.step.is_multiple_of(criterion_steps(&clock));
     let mut touched: Vec<Entity> = Vec::new();
     for (
         entity,
@@ -111,7 +117,7 @@ fn element_removal(
             displacement,
             law,
             fibre_direction: fibres.map(|f| &f.0),
-            memory: memory.map(|m| &m.0),
+            memory: memory.0.map(|m| &m.0).or(memory.1.map(|m| &m.0)),
             nodal_volume_change: means.map(|means| Cow::Borrowed(&means.0)),
         };
         let of_block: Vec<&RemovalCriterion> = criteria.iter().filter(|c| is_due && c.block == entity).collect();
@@ -224,13 +230,14 @@ uniform!(Removal { density });
 fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let blocks = BlockKernels::of_world(world, buffers);
     let criteria: Vec<RemovalCriterion> = world.query::<&RemovalCriterion>().iter(world).cloned().collect();
+    let steps = criterion_steps(world.resource::<Clock>());
     let mut kernels = Vec::new();
     let mut recomputed = Vec::new();
     for block in blocks.iter().filter(|block| world.get::<Alive>(block.entity).is_some()) {
         let of_block: Vec<&RemovalCriterion> = criteria.iter().filter(|c| c.block == block.entity).collect();
         // a bit for each criterion
         for some in of_block.chunks(32) {
-            kernels.push(with_step(criterion_kernel(block, some, buffers), world));
+            kernels.push(with_step(criterion_kernel(block, (some, steps), buffers), world));
         }
         kernels.push(with_step(motion_kernel(block, world, buffers), world));
         kernels.push(with_step(removal_kernel(block, buffers), world));
@@ -246,9 +253,14 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     kernels
 }
 
-fn criterion_kernel(block: &BlockKernels, criteria: &[&RemovalCriterion], buffers: &mut dyn Buffers) -> Kernel {
+/// What finds elements that pass a limit, in every so many steps.
+fn criterion_kernel(
+    block: &BlockKernels,
+    (criteria, steps): (&[&RemovalCriterion], u64),
+    buffers: &mut dyn Buffers,
+) -> Kernel {
     let mut text = format!(
-        "const LIMITS: u32 = {}u;\nconst CRITERION_STEPS: u32 = {CRITERION_STEPS}u;\n\
+        "const LIMITS: u32 = {}u;\nconst CRITERION_STEPS: u32 = {steps}u;\n\
          fn passes_a_limit(element: u32, of_element: u32, e: Element) -> bool {{\n    return false",
         criteria.len()
     );

@@ -19,7 +19,7 @@ use crate::shader;
 use bevy_ecs::prelude::*;
 pub(super) use foreseen::Grip;
 use glam::{DMat3, DVec3};
-pub(crate) use solved::{HeldNode, held_in_step, note_held};
+pub(crate) use solved::{Given, HeldNode, held_in_step, note_held};
 
 /// A node that a closed tool holds stays at the place in the tool's frame where it was when the tool closed: motion
 /// that is prescribed by a frame. Like `tool_contact` it finds the force that takes the predicted step there, after all

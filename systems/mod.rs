@@ -71,10 +71,11 @@ mod traction;
 
 pub use crate::backend::cpu::{Cpu, NodeColumns};
 pub use crate::math::SimdScalar;
+pub(crate) use element_removal::criterion_steps;
 pub(crate) use gather::sum_corners;
 pub(crate) use glue::find_ties;
 pub(crate) use grab::{bytes_of as grab_bytes, uniform_of as grab_uniform};
-pub(crate) use grasp::{HeldNode, held_in_step, note_held};
+pub(crate) use grasp::{Given, HeldNode, held_in_step, note_held};
 pub(crate) use host_forces::SlopesOf;
 pub(crate) use nodal_volume::means_of;
 pub(crate) use node_pass::{NodePass, node_pass, shared_pass};

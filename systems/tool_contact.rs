@@ -265,7 +265,7 @@ impl ToolContacts {
         if let Some(spring) = contact.spring {
             let (distance, normal) = contact.geometry.distance(here);
             let (normal, tool_step) = (earlier.rotation * normal, change.place(here));
-            let gap = spring.gap(distance, normal.dot(before - tool_step));
+            let gap = step.coefficients.work_factor * spring.gap(distance, normal.dot(before - tool_step));
             let friction = friction(normal, tool_step);
             let still = Touch { tool, normal, gap, target: 0.0, tool_step, friction, ..Touch::default() };
             return (gap < 0.0).then_some(Touch { slides: true, springs: true, ..still });

@@ -1,7 +1,7 @@
 //! `tool_removal`: chooses the elements that tools take. `shaders/tool_removal.wgsl` is its twin, with
 //! `shaders/tool_removal_choice.wgsl` and `shaders/tool_removal_due.wgsl`.
 
-use super::element_removal::CRITERION_STEPS;
+use super::element_removal::criterion_steps;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::block_kernel::BlockKernels;
@@ -21,9 +21,9 @@ use glam::DVec3;
 /// are nearest to its mouth first, of equally near ones that of the lower number. So the volume that is gone is that
 /// which was taken in, to one element, whatever the mesh.
 ///
-/// What is in reach is looked at in every tenth step, as criteria are; while there is nothing, nothing is taken in.
-/// Where nothing is left in reach, no more than the largest element's volume stays taken in, and what ten steps take:
-/// the rest was no tissue. While the rate is 0 nothing goes. An element that is chosen is due at once:
+/// What is in reach is looked at as often as criteria are; while there is nothing, nothing is taken in. Where nothing
+/// is left in reach, no more than the largest element's volume stays taken in, and what the steps from one look to the
+/// next take: the rest was no tissue. While the rate is 0 nothing goes. An element that is chosen is due at once:
 /// `element_removal` takes it in the same step.
 pub fn system() -> System {
     System::built_in(
@@ -64,6 +64,7 @@ fn tool_removal(
     mut bodies: Query<BodyQuery>,
     mut blocks: Query<BlockQuery>,
 ) {
+    let steps = criterion_steps(&clock);
     for (removals, mut intake, authoring, rest, displacement) in &mut bodies {
         let place = |node: u32| rest.0[node as usize] - removals.reference + displacement.vector(node as usize);
         for (number, removal) in by_rate(removals) {
@@ -73,7 +74,7 @@ fn tool_removal(
             if intake.get(at + 1) != 0.0 {
                 volume += of_step;
             }
-            if clock.step.is_multiple_of(CRITERION_STEPS) {
+            if clock.step.is_multiple_of(steps) {
                 let mut found = Vec::new();
                 for (&entity, numbers) in authoring.blocks.iter().zip(&removal.numbers) {
                     let Ok(block) = blocks.get(entity) else { continue };
@@ -96,7 +97,7 @@ fn tool_removal(
                 }
                 // nothing is left in reach: what is more was no tissue
                 if gone == count {
-                    volume = volume.min(removal.largest + CRITERION_STEPS as f64 * of_step.max(0.0));
+                    volume = volume.min(removal.largest + steps as f64 * of_step.max(0.0));
                 }
             }
             intake.set(at, volume);
@@ -192,6 +193,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let blocks = BlockKernels::of_world(world, buffers);
     let all: Vec<(Entity, ToolRemovals)> =
         world.query::<(Entity, &ToolRemovals)>().iter(world).map(|(body, removals)| (body, removals.clone())).collect();
+    let steps = criterion_steps(world.resource::<Clock>());
     let mut kernels = Vec::new();
     for (body, removals) in all {
         let (Some(authoring), Some(rest)) = (world.get::<Authoring>(body), world.get::<RestPosition>(body)) else {
@@ -213,7 +215,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
                     .of_columns("tool_removal")
                     .fragment(shader!("tool_removal"))
                     .fragment(shader!("tool_shape"))
-                    .fragment(criterion_due())
+                    .fragment(criterion_due(steps))
                     .bind_uniform::<Reach>("reach", buffers.uniform("tool_removal".into(), &Reach::of(removal).bytes()))
                     .bind(Displacement::NAME, buffers.column(body, Displacement::NAME))
                     .bind(RestShape::NAME, column(RestShape::NAME, buffers))
@@ -228,7 +230,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
                 let mark = Kernel::new("tool_removal_due", "tool_removal_due")
                     .fragment(shader!("tool_removal_due"))
                     .fragment(shader!("row"))
-                    .fragment(criterion_due())
+                    .fragment(criterion_due(steps))
                     .threads(count)
                     .bind_uniform::<Chosen>("due", due_of)
                     .bind(RemovalStep::NAME, due)
@@ -238,7 +240,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
             }
             let choose = Kernel::new("tool_removal_choice", "tool_removal_choice")
                 .fragment(shader!("tool_removal_choice"))
-                .fragment(criterion_due())
+                .fragment(criterion_due(steps))
                 .bind_uniform::<Choice>("choice", choice((removal, number), chosen, buffers))
                 .bind(ToolIntake::NAME, buffers.column(body, ToolIntake::NAME))
                 .bind(ToolReach::NAME, buffers.column(body, ToolReach::NAME))
@@ -257,10 +259,10 @@ fn choice((removal, number): (&ToolRemoval, usize), chosen: u32, buffers: &mut d
     buffers.uniform("choice of tool_removal".into(), &choice.bytes())
 }
 
-/// Whether the criterion is due where a step ends.
-fn criterion_due() -> Fragment {
+/// Whether the criterion is due where a step ends, in every so many.
+fn criterion_due(steps: u64) -> Fragment {
     let text = format!(
-        "const CRITERION_STEPS: u32 = {CRITERION_STEPS}u;\n\
+        "const CRITERION_STEPS: u32 = {steps}u;\n\
          fn step_that_comes() -> u32 {{\n    return max(step.number, step.number + 1u);\n}}\n\
          fn criterion_due() -> bool {{\n    return step_that_comes() % CRITERION_STEPS == 0u;\n}}\n"
     );

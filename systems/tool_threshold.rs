@@ -10,8 +10,8 @@ use bevy_ecs::prelude::*;
 use std::borrow::Cow;
 
 /// Elements whose centroids are in a tool's reach and that pass its threshold are due at once, `burst` of them at most
-/// at a time, those nearest to the mouth first. It is looked for them in every tenth step while the course of the
-/// removal is above 0. On a GPU this runs on the host.
+/// at a time, those nearest to the mouth first. It is looked for them as often as for what passes criteria, while the
+/// course of the removal is above 0. On a GPU this runs on the host.
 pub fn system() -> System {
     let system = System::built_in(
         "tool_threshold",
@@ -42,7 +42,7 @@ type BlockQuery<'a> = (
     &'a mut RemovalStep,
     &'a BlockLaw<f64>,
     Option<&'a FibreDirection>,
-    Option<&'a ViscousMemory>,
+    (Option<&'a MemoryBefore>, Option<&'a ViscousMemory>),
     Option<&'a NodalVolumeChange>,
 );
 
@@ -71,7 +71,7 @@ fn tool_threshold(
                     displacement,
                     law,
                     fibre_direction: fibres.map(|f| &f.0),
-                    memory: memory.map(|m| &m.0),
+                    memory: memory.0.map(|m| &m.0).or(memory.1.map(|m| &m.0)),
                     nodal_volume_change: means.map(|means| Cow::Borrowed(&means.0)),
                 };
                 let of_block = (entity, (block, connectivity, shape, alive, due));

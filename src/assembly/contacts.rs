@@ -242,9 +242,11 @@ pub(super) fn edge(body: &BodyParts) -> f64 {
     if count > 0.0 { sum / count } else { 0.0 }
 }
 
-/// How fast nodes inside a tool come out (m/s): half an edge in the time that a wave takes through the body.
+/// How fast nodes inside a tool come out (m/s): half an edge in the time that a wave takes through the body, or through
+/// one of its copies.
 pub(super) fn settling(body: &BodyParts, edge: f64, world: &World) -> f64 {
-    let (low, high) = bounds(&body.placed.mesh.points);
+    let points = &body.placed.mesh.points;
+    let (low, high) = bounds(&points[..points.len() / body.copies.max(1)]);
     let square = |of: Stiffness| (of.lambda + 2.0 * of.shear + of.eta) / of.density;
     let materials = body.blocks.iter().flat_map(|&block| stiffnesses(world, block));
     let speed = materials.map(square).fold(0.0, f64::max).sqrt();

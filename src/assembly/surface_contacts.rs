@@ -51,7 +51,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World) {
         let zeros = |rows: usize, numbers: usize| Reals::zeros(assembly.precision, numbers * rows);
         let nodes = body.node_rows.len();
         let columns = (ContactForce(zeros(nodes, 3)), SurfaceTouch(zeros(nodes, MEETING_NUMBERS)));
-        world.entity_mut(body.entity).insert(columns).insert(Meets(contacts.met_by(number)));
+        world.entity_mut(body.entity).insert(columns).insert(Meets(met_by(&contacts, number)));
         if contacts.has_face_points(number) {
             let counted = |facet: [u32; 4]| (facet, face_points(facet).len());
             let points = if scene.may_lose_elements(name) {
@@ -68,6 +68,16 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World) {
         }
     }
     world.insert_resource(contacts);
+}
+
+/// The bodies that are kept away from one, by its place among all, and how it meets them.
+fn met_by(contacts: &SurfaceContacts, number: usize) -> Vec<Met> {
+    let of_body = |body: Entity| {
+        let other = contacts.bodies.iter().position(|of| *of == body)?;
+        let Meeting { thickness, faces, edge, .. } = contacts.meetings[number * contacts.bodies.len() + other]?;
+        Some(Met { body, thickness, faces, edge_of_body: contacts.edges[other], edge })
+    };
+    contacts.met_by(number).into_iter().filter_map(of_body).collect()
 }
 
 /// The lengths of an edge of bodies (m), of such as are alike the smallest.

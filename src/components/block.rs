@@ -51,6 +51,9 @@ columns! {
     FibreDirection(Reals) = "fibre_direction", Given of Mesh, Elements;
     /// Viscous history q: six numbers a point and Prony term, then one a term of the pressure.
     ViscousMemory(Reals) = "viscous_memory", State of Memory, Elements;
+    /// The same as it was before the last step. Implicit steps have carried their memories on when somebody looks at
+    /// stress, which is that at their end. Exists with [`ViscousMemory`] where steps are implicit.
+    MemoryBefore(Reals) = "memory_before", State of Scheme, Elements;
     /// 1 until the element is removed, then 0. Exists when elements can be removed.
     Alive(Vec<u32>) = "alive", State of Removal, Elements;
     /// The step before which the element goes at the latest; `u32::MAX`: never. Exists with [`Alive`].

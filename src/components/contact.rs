@@ -23,7 +23,21 @@ columns! {
 
 /// The bodies that contact keeps away from this one.
 #[derive(Component, Clone, Debug)]
-pub(crate) struct Meets(pub Vec<Entity>);
+pub(crate) struct Meets(pub Vec<Met>);
+
+/// How points of a body meet faces of another, or of its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Met {
+    /// That one.
+    pub body: Entity,
+    /// How far they stay apart (m).
+    pub thickness: f64,
+    /// Whether the points are those of faces, and not nodes.
+    pub faces: bool,
+    /// The length of an edge of that one, and the smaller of both (m).
+    pub edge_of_body: f64,
+    pub edge: f64,
+}
 
 /// A spring in place of the kinematic law of contact (`Penalty`).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +51,8 @@ pub struct ContactSpring {
 impl ContactSpring {
     /// The gap (m) that the kinematic law would have to close for the force that the spring has, where a point is so
     /// far outside (m; negative inside) and goes outwards by so much in a step (m), by that of the last step. 0 where
-    /// there is no force: springs do not pull.
+    /// there is no force: springs do not pull. That is of a step like the one before; in others the force of a gap is
+    /// another by the time between their middles over Δt, with which who asks multiplies it.
     pub fn gap(&self, outside: f64, outwards: f64) -> f64 {
         // what is no number is told by guards, not lost
         if outside >= 0.0 {

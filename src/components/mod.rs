@@ -3,7 +3,7 @@
 //! | entity | components |
 //! |---|---|
 //! | body | node columns ([`nodes`]), [`Corners`], [`ElementForce`], [`Authoring`] |
-//! | element block: one element type, one material, one body | [`Block`], [`Connectivity`], [`Patches`], [`RestShape`] and, where called for, [`FibreDirection`], [`ViscousMemory`], [`NodalVolumeChange`], [`Alive`], [`RemovalStep`] |
+//! | element block: one element type, one material, one body | [`Block`], [`Connectivity`], [`Patches`], [`RestShape`] and, where called for, [`FibreDirection`], [`ViscousMemory`], [`MemoryBefore`], [`NodalVolumeChange`], [`Alive`], [`RemovalStep`] |
 //! | material | [`Density`], an [elastic law](crate::materials::ElasticLaw), [`Fibres`](crate::materials::Fibres), [`ExponentialFibres`], [`Prony`], [`Damping`], [`StiffnessDamping`]: an effect exists when its component does |
 //! | constraint, load, removal | [`Fixed`], [`Prescribed`], [`SceneLoad`], [`OwnLoad`], [`RemovalCriterion`] with the rows they act on |
 //! | probe | [`Probe`] |
@@ -52,8 +52,9 @@ pub use signal::Signals;
 // what the engine, the crates on top and tests see beside: no version keeps their names and types
 #[doc(hidden)]
 pub use block::{
-    AddedMass, Block, BlockCorners, ElementSums, ElementVolume, FamilyDirection, FirstInverted, NodalVolumeChange,
-    OnInversion, RemovalTime, RemovedEnergy, RemovedMomentum, RemovedWork, patch_groups, patch_length,
+    AddedMass, Block, BlockCorners, ElementSums, ElementVolume, FamilyDirection, FirstInverted, MemoryBefore,
+    NodalVolumeChange, OnInversion, RemovalTime, RemovedEnergy, RemovedMomentum, RemovedWork, patch_groups,
+    patch_length,
 };
 #[doc(hidden)]
 pub use clock::{Relaxation, TrialForces};
@@ -63,12 +64,12 @@ pub use column::{ColumnAccess, Role, all_columns, column_is, columns_in, place_i
 pub use column_layout::{Increments, Rows, Subject};
 #[doc(hidden)]
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
-pub(crate) use contact::Meets;
 #[doc(hidden)]
 pub use contact::{
     ContactForce, ContactGain, ContactSpring, FacePlaces, FaceTouch, MEETING_NUMBERS, SurfaceRows, SurfaceSleep,
     SurfaceTouch,
 };
+pub(crate) use contact::{Meets, Met};
 #[doc(hidden)]
 pub use free_tool::{FreeMotion, FreeMotions, FreeTool, FreeTools, FreeTouch, MetBody};
 #[doc(hidden)]

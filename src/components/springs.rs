@@ -9,8 +9,12 @@ use smallvec::SmallVec;
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
 pub struct SolvedSprings {
     /// The step (s) over the square of which a share of the mass is a stiffness: the stable one of the stiffest
-    /// element, at the start.
+    /// element, at the start; before a motion by explicit steps their own.
     pub step: f64,
+    /// Whether a spring between surfaces acts on what it does in explicit steps, the masses of the nodes on both sides,
+    /// split among all that touches there; else on that of the point.
+    #[serde(skip)]
+    pub shared: bool,
     /// What becomes of their forces.
     #[serde(skip)]
     pub forces: SpringForces,

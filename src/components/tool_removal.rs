@@ -55,8 +55,8 @@ pub struct ToolRemoval {
     pub crumb: f64,
     /// Elements that it takes at most when it looks.
     pub burst: u32,
-    /// The volume (m³) of the largest element that it may take: no more stays taken in, but what ten steps take, where
-    /// nothing is left in its reach.
+    /// The volume (m³) of the largest element that it may take: no more stays taken in, but what the steps from one
+    /// look to the next take, where nothing is left in its reach.
     pub largest: f64,
     /// For each of the body's blocks and each of its elements the author's place of it; `u32::MAX`: it stays.
     pub numbers: Vec<Vec<u32>>,

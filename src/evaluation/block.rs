@@ -51,10 +51,12 @@ impl<'a> BlockView<'a> {
         Some(view)
     }
 
-    /// A block as it is now, its history included.
+    /// A block as it is now, its history included: after an implicit step that of its beginning, with which its forces
+    /// were found; else the one with which the next step will find them.
     pub fn now(world: &'a World, entity: Entity) -> Option<Self> {
         let displacement = world.get::<Displacement>(world.get::<Block>(entity)?.body)?;
-        let memory = world.get::<ViscousMemory>(entity).map(|m| &m.0);
+        let before = world.get::<MemoryBefore>(entity).map(|m| &m.0);
+        let memory = before.or_else(|| world.get::<ViscousMemory>(entity).map(|m| &m.0));
         Some(Self { memory, ..Self::under(world, entity, displacement)? })
     }
 
@@ -63,7 +65,7 @@ impl<'a> BlockView<'a> {
         ElementState::of(self.block, row, self.connectivity, self.shape, self.displacement, self.law.elastic_of(row))
     }
 
-    /// First Piola-Kirchhoff stress (Pa) at a point that the next `element_forces` will find.
+    /// First Piola-Kirchhoff stress (Pa) at a point that `element_forces` finds at these displacements.
     pub fn stress(&self, row: usize, state: &ElementState, point: usize) -> Mat3<f64> {
         let (law, k) = (self.law, &state.points()[point].kinematics);
         let elastic = law.elastic_of(row);

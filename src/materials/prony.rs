@@ -59,6 +59,16 @@ impl PronyTerm<f64> {
         Self { stress: 0.0, memory: 0.0, rate, aim: times / rate }
     }
 
+    /// Carries a memory on that one term took from the stress with, so that another takes as much of the present one:
+    /// s S + m q = s' S + m' q'.
+    pub(crate) fn keeping(before: &Self, after: &Self) -> Self {
+        let times = (before.stress - after.stress) / after.memory;
+        match 1.0 - before.memory / after.memory {
+            0.0 => Self::adding(times),
+            rate => Self { stress: 0.0, memory: 0.0, rate, aim: times / rate },
+        }
+    }
+
     /// What has relaxed after a long time, Υ = αS, whatever the history; q stays as it is.
     pub fn long_term(alpha: f64) -> Self {
         Self { stress: alpha, memory: 0.0, rate: 0.0, aim: 0.0 }

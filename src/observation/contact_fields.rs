@@ -1,5 +1,7 @@
 //! What nodes feel of what touches them, as fields and for probes: force, traction, pressure, area, gap, slip.
 
+mod present;
+
 use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::contact::face_points;
@@ -47,6 +49,8 @@ struct FacetNow {
     facet: [u32; 4],
     /// Length of its first edge (m).
     edge: f64,
+    /// Half of how far its element reaches behind it at rest (m).
+    depth: f64,
 }
 
 /// The exposed surface of a body as it is.
@@ -66,14 +70,23 @@ fn surface_now(body: Entity, world: &mut World) -> Result<Vec<FacetNow>, Error> 
         let row = authoring.node_rows[node as usize] as usize;
         rest.0[row] + u.vector(row)
     };
-    let now = |facet: [u32; 4]| {
+    let at_rest = |node: u32| rest.0[authoring.node_rows[node as usize] as usize];
+    let depth = |facet: [u32; 4], element: u32| {
+        let [a, b, c, _] = facet.map(at_rest);
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let behind = authoring.cells.nodes(element as usize).iter().map(|&node| normal.dot(a - at_rest(node)));
+        0.5 * behind.fold(0.0, f64::max)
+    };
+    let now = |(facet, element): ([u32; 4], u32)| {
         let [a, b, c, d] = facet.map(place);
         let corners = if facet[2] == facet[3] { 3 } else { 4 };
         let area = 0.5 * ((b - a).cross(c - a) + (c - a).cross(d - a));
         let nodes = facet[..corners].iter().map(|&node| node as usize).collect();
-        FacetNow { nodes, share: area / corners as f64, facet, edge: a.distance(b) }
+        let (share, edge) = (area / corners as f64, a.distance(b));
+        FacetNow { nodes, share, facet, edge, depth: depth(facet, element) }
     };
-    Ok(authoring.surface(alive).iter().flat_map(|face| face.facets()).map(now).collect())
+    let faces = authoring.surface(alive);
+    Ok(faces.iter().flat_map(|face| face.facets().map(move |facet| (facet, face.element))).map(now).collect())
 }
 
 /// The same over the area of the surface around each node as it is (Pa): a third of its triangles, a quarter of its
@@ -105,12 +118,22 @@ fn into_surface(force: DVec3, along: DVec3) -> f64 {
     -force.dot(along.normalize_or_zero())
 }
 
-/// Gap (m) and length slid (m) of each node, in the author's order: of points of faces the least gap and the longest
-/// length of those around a node. A mean would follow which of them face anything, as those beyond an edge do at times.
+/// Gap (m) of each node, in the author's order: as contact saw it in the step, else by the surfaces as they are, as far
+/// as an edge is long on average; that where a node faces nothing so near.
+fn gaps(body: Entity, surface: &[FacetNow], world: &mut World) -> Result<Vec<f64>, Error> {
+    let nowhere = surface.iter().map(|facet| facet.edge).sum::<f64>() / surface.len().max(1) as f64;
+    let mut gaps: Vec<f64> = gaps_and_slips(body, surface, world)?.into_iter().map(|[gap, _]| gap).collect();
+    present::find((body, surface), nowhere, &mut gaps, world)?;
+    gaps.iter_mut().filter(|gap| gap.is_infinite()).for_each(|gap| *gap = nowhere);
+    Ok(gaps)
+}
+
+/// Gap (m) and length slid (m) of each node as contact has them, in the author's order; infinite where it faced nothing
+/// that could touch in the step. Of points of faces the least gap and the longest length of those around a node: a mean
+/// would follow which of them face anything, as those beyond an edge do at times.
 fn gaps_and_slips(body: Entity, surface: &[FacetNow], world: &mut World) -> Result<Vec<[f64; 2]>, Error> {
     let wanted = [SurfaceTouch::NAME, FaceTouch::NAME, ToolTouch::NAME];
     bring_to_host(world, |entity, name| entity == body && wanted.contains(&name))?;
-    let nowhere = surface.iter().map(|facet| facet.edge).sum::<f64>() / surface.len().max(1) as f64;
     let entity = world.entity(body);
     let Some(authoring) = entity.get::<Authoring>() else { return Ok(Vec::new()) };
     let count = authoring.node_rows.len();
@@ -150,7 +173,7 @@ fn gaps_and_slips(body: Entity, surface: &[FacetNow], world: &mut World) -> Resu
     super::free_tools::add_slips(world, body, &mut slid);
     let of_node = |(node, &row): (usize, &u32)| {
         let [gap, longest] = found[node];
-        [if gap.is_finite() { gap } else { nowhere }, longest + slid[row as usize]]
+        [gap, longest + slid[row as usize]]
     };
     Ok(authoring.node_rows.iter().enumerate().map(of_node).collect())
 }
@@ -176,7 +199,7 @@ pub(super) fn contact_field(field: OutputField, body: Entity, world: &mut World)
             let pressed = pressed(&forces, &surface);
             forces.into_iter().zip(pressed).map(pressure).collect()
         }
-        OutputField::ContactGap => gaps_and_slips(body, &surface, world)?.into_iter().map(|[gap, _]| gap).collect(),
+        OutputField::ContactGap => gaps(body, &surface, world)?,
         _ => gaps_and_slips(body, &surface, world)?.into_iter().map(|[_, slip]| slip).collect(),
     })
 }
@@ -204,10 +227,11 @@ pub(super) fn of_probe(world: &mut World, body: Entity, probe: &Probe) -> Result
         let pressure = if area > 0.0 { force / area } else { 0.0 };
         return Ok(vec![if probe.what == Quantity::ContactArea { area } else { pressure }]);
     }
+    if probe.what == Quantity::ContactGap {
+        let gaps = gaps(body, &surface, world)?;
+        return Ok(vec![all().map(|node| gaps[node]).fold(f64::INFINITY, f64::min)]);
+    }
     let found = gaps_and_slips(body, &surface, world)?;
     let count = all().count().max(1) as f64;
-    Ok(vec![match probe.what {
-        Quantity::ContactGap => all().map(|node| found[node][0]).fold(f64::INFINITY, f64::min),
-        _ => all().map(|node| found[node][1]).sum::<f64>() / count,
-    }])
+    Ok(vec![all().map(|node| found[node][1]).sum::<f64>() / count])
 }

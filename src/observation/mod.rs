@@ -336,10 +336,16 @@ impl Observer {
         Err(self.refused(world, "", format!("{} would be {value}", what()), Criterion::of("result")))
     }
 
-    /// That an implicit step was not found.
-    pub fn unsolved(&self, world: &World, found: String, criterion: Criterion) -> Error {
-        let cause = "a step too long for how bodies move (smaller `step` of `solver`), a load or motion too large for the \
-                     mesh, or bodies that give way: buckling, a law that softens";
+    /// That an implicit step was not found; `rubs`: where something touched with friction.
+    pub fn unsolved(&self, world: &World, (found, rubs): (String, bool), criterion: Criterion) -> Error {
+        let cause = if rubs {
+            "a step too long for how bodies move (smaller `step` of `solver`), springs of contact that stick and slide by \
+             turns (a smaller `share`, less `friction`, or a shorter step), a load or motion too large for the mesh, or \
+             bodies that give way: buckling, a law that softens"
+        } else {
+            "a step too long for how bodies move (smaller `step` of `solver`), a load or motion too large for the mesh, or \
+             bodies that give way: buckling, a law that softens"
+        };
         let nowhere = String::new();
         let broken =
             guards::instability(world, &self.guard_settings, nowhere, found, cause, criterion, self.good_until);

@@ -92,7 +92,7 @@ enum Kept {
 
 impl Kept {
     fn of(world: &World, pair: [Entity; 2]) -> Self {
-        let meets = world.get::<Meets>(pair[0]).is_some_and(|meets| meets.0.contains(&pair[1]));
+        let meets = world.get::<Meets>(pair[0]).is_some_and(|meets| meets.0.iter().any(|met| met.body == pair[1]));
         let tied = |glue: &Glue| {
             glue.ties.iter().any(|tie| pair.iter().all(|body| tie.bodies.map(|of| glue.bodies[of]).contains(body)))
         };

@@ -44,7 +44,8 @@ pub fn header(what: &Quantity) -> Vec<Heading> {
 
 /// What a probe sees at the present step.
 ///
-/// Reactions are made of the forces at the beginning of the step that has just been taken.
+/// Reactions are made of the forces at the beginning of the step that has just been taken; of implicit steps at its
+/// end.
 ///
 /// # Errors
 /// What the GPU says.
@@ -94,7 +95,10 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
         let sum: DVec3 = probe.nodes.iter().map(|&row| of(row as usize)).sum();
         (sum / probe.nodes.len().max(1) as f64).to_array().to_vec()
     };
-    let rate = world.resource::<Clock>().rate();
+    let clock = world.resource::<Clock>();
+    let rate = clock.rate();
+    // arms are where the forces were: at the beginning of the step, of implicit ones at its end
+    let back = if clock.velocities_at_ends { 0.0 } else { 1.0 };
     let entity = world.entity(body);
     let vector = |reals: Option<&Reals>, row: usize| reals.map_or(DVec3::ZERO, |reals| reals.vector(row));
     let displacement = entity.get::<Displacement>().map(|u| &u.0);
@@ -106,8 +110,7 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
     let reaction = || rows().map(force).sum::<DVec3>();
     let rest = entity.get::<RestPosition>();
     let place = |row: usize| rest.map_or(DVec3::ZERO, |rest| rest.0[row]) + vector(displacement, row);
-    // arms are where the forces were, at the beginning of the step
-    let arm = |row: usize, center: DVec3| place(row) - vector(step, row) - center;
+    let arm = |row: usize, center: DVec3| place(row) - back * vector(step, row) - center;
     let moment = |center: DVec3| rows().map(|row| arm(row, center).cross(force(row))).sum::<DVec3>();
     Ok(match probe.what {
         Quantity::Displacement => mean(&|row| vector(displacement, row)),

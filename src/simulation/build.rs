@@ -47,6 +47,16 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::new`].
     pub fn with_systems(scene: &SceneFile, options: &Options, registry: &Registry) -> Result<Self, Error> {
+        Self::on_springs(scene, options, registry, None)
+    }
+
+    /// The same, with the springs on which bodies come to rest where these are those of a motion.
+    pub(super) fn on_springs(
+        scene: &SceneFile,
+        options: &Options,
+        registry: &Registry,
+        springs: Option<SolvedSprings>,
+    ) -> Result<Self, Error> {
         let started = Instant::now();
         let mut diagnostics = scene.diagnostics();
         let mut world = World::new();
@@ -59,7 +69,7 @@ impl Simulation {
                 )
                 .note("run it with `--precision f64`; of a program, `Options::precision` is `Precision::F64`");
         }
-        let prepared = prepare(scene, options, &known, &mut world, &mut diagnostics);
+        let prepared = prepare(scene, (options, springs), &known, &mut world, &mut diagnostics);
         let Some(Prepared { assembly, clock, stability, steps, schedule }) =
             prepared.filter(|_| !diagnostics.has_errors())
         else {
@@ -163,7 +173,7 @@ impl Simulation {
             slopes: schedule.iter().filter_map(|entry| entry.system.slopes()).collect(),
             warnings: diagnostics,
         };
-        let settling = super::preload::settling(scene, options)?;
+        let settling = super::preload::settling(scene, options, world.resource::<Clock>())?;
         // rest shapes have gone into the world
         let mut file = scene.clone();
         file.rest_shapes.clear();

@@ -92,11 +92,13 @@ impl Simulation {
         self.observe_if_due(step + 1)
     }
 
-    /// What comes after an implicit step: kernels of that step, and who observes.
-    pub(super) fn after_a_step_on_device(&mut self, step: u64) -> Result<(), Error> {
+    /// What comes after an implicit step: kernels of that step, what changes where elements have gone since there were
+    /// so many, and who observes.
+    pub(super) fn after_a_step_on_device(&mut self, step: u64, elements: usize) -> Result<(), Error> {
         let after = self.entries.iter().filter(|entry| after_the_step(entry.phase));
         let kernels: Vec<KernelId> = after.flat_map(ScheduledPass::kernels).copied().collect();
         self.run_kernels(&kernels, step, 1)?;
+        self.renew_forces(step, elements)?;
         self.observe_if_due(step + 1)
     }
 

@@ -49,6 +49,9 @@ impl Simulation {
     /// The `count` lowest natural modes at the present state, bodies as they are held, viscosity as for sudden motion,
     /// without damping. None where nothing can move. Costs some thousand evaluations of the forces.
     ///
+    /// Stiffness is that of elements, and what holds bodies are constraints: glue, ties, sutures, grasps and contact
+    /// take no part, so that of what they hold frequencies are too low.
+    ///
     /// # Errors
     /// What the GPU says; states whose forces are no numbers.
     pub fn modes(&mut self, count: usize) -> Result<Vec<Mode>, Error> {

@@ -12,11 +12,17 @@ use crate::contact::face_points;
 use crate::error::{Error, NotConverged};
 use crate::mesh::SurfaceFace;
 use crate::scene::SceneFile;
-use crate::scene::schema::{Analysis, EquilibriumSearch, InitialState, Integration, Inversion, Output, Scene};
+use crate::scene::schema::{
+    Analysis, ContactLaw, EquilibriumSearch, InitialState, Integration, Inversion, Output, Scene,
+};
+use crate::systems::Registry;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use serde::Serialize;
 use web_time::Instant;
+
+/// How often rest is sought anew because the step of the motion has become another.
+const RENEWALS: u32 = 4;
 
 /// What bringing the bodies to rest before the first step took.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -45,11 +51,20 @@ fn is_touch(column: &ColumnAccess) -> bool {
 ///
 /// # Errors
 /// As [`Simulation::new`].
-pub(super) fn settling(scene: &SceneFile, options: &Options) -> Result<Option<Box<Simulation>>, Error> {
+pub(super) fn settling(scene: &SceneFile, options: &Options, clock: &Clock) -> Result<Option<Box<Simulation>>, Error> {
     let Some(at_rest) = at_rest(&scene.scene) else { return Ok(None) };
+    // springs bear what the first step finds
+    let springs = has_springs(&at_rest).then(|| {
+        let of_steps = SolvedSprings { step: clock.time_step, shared: true, forces: SpringForces::Stepped };
+        clock.springs.map_or(of_steps, |springs| SolvedSprings { forces: SpringForces::Stepped, ..springs })
+    });
     let mut file = scene.clone();
     file.scene = at_rest;
-    Ok(Some(Box::new(Simulation::new(&file, options)?)))
+    Ok(Some(Box::new(Simulation::on_springs(&file, options, &Registry::default(), springs)?)))
+}
+
+fn has_springs(scene: &Scene) -> bool {
+    scene.contacts.iter().any(|contact| contact.law() != ContactLaw::Kinematic)
 }
 
 /// The scene whose equilibrium is sought; `None` where none is. What belongs to the motion only is left out: systems of
@@ -90,14 +105,18 @@ impl Simulation {
     pub fn settle(&mut self) -> Result<(), Error> {
         let Some(mut analysis) = self.settling.take() else { return Ok(()) };
         let started = Instant::now();
-        if let Err(error) = analysis.find_equilibrium() {
-            // who asks again gets no motion from elsewhere
-            self.settling = Some(analysis);
-            return Err(at_start(error));
+        for turn in 0..=RENEWALS {
+            if let Err(error) = analysis.find_equilibrium() {
+                // who asks again gets no motion from elsewhere
+                self.settling = Some(analysis);
+                return Err(at_start(error));
+            }
+            self.stand_as(&mut analysis.world)?;
+            let Some(step) = self.other_step(&analysis)?.filter(|_| turn < RENEWALS) else { break };
+            analysis.rest_again(step);
         }
         let equilibrium = analysis.equilibrium().cloned().unwrap_or_default();
         let steps = analysis.step_count();
-        self.stand_as(&mut analysis.world)?;
         self.preload = Some(Preload { equilibrium, steps, seconds: started.elapsed().as_secs_f64() });
         Ok(())
     }
@@ -105,6 +124,16 @@ impl Simulation {
     /// What settling took; `None` where it was not asked for or has not been done yet.
     pub fn preload(&self) -> Option<&Preload> {
         self.preload.as_ref()
+    }
+
+    /// The step of the motion (s), where springs bear bodies at rest as those of another one would: of bodies as they
+    /// stand another may be stable, which is looked at now.
+    fn other_step(&mut self, analysis: &Self) -> Result<Option<f64>, Error> {
+        let springs = analysis.world.resource::<Clock>().springs.filter(|springs| springs.shared);
+        let Some(springs) = springs else { return Ok(None) };
+        self.on_threads(Self::follow)?;
+        let step = self.world.resource::<Clock>().time_step;
+        Ok((step != springs.step).then_some(step))
     }
 
     fn find_equilibrium(&mut self) -> Result<(), Error> {

@@ -24,10 +24,11 @@ pub(super) struct Prepared<'a> {
     pub schedule: Vec<Scheduled<'a>>,
 }
 
-/// Makes a scene's world and its schedule. All mistakes that can be found go to `diagnostics`.
+/// Makes a scene's world and its schedule. All mistakes that can be found go to `diagnostics`. `springs`: those on
+/// which bodies come to rest for a motion, where they are its own.
 pub(super) fn prepare<'a>(
     scene: &'a SceneFile,
-    options: &Options,
+    (options, springs): (&Options, Option<SolvedSprings>),
     known: &'a Known<'_>,
     world: &mut World,
     diagnostics: &mut Diagnostics,
@@ -53,7 +54,7 @@ pub(super) fn prepare<'a>(
     insert_laws(options.precision, world);
     // and on how stiff systems are, of which one's own know by their parameters
     hand_out(&scene.scene, known, world, diagnostics);
-    let (clock, stability, steps) = clock(scene, known, world, diagnostics)?;
+    let (clock, stability, steps) = clock((scene, springs), known, world, diagnostics)?;
     outputs::check(scene, &clock, steps, diagnostics);
     outputs::check_curves(scene, &clock, diagnostics);
     let names = scene.scene.schedule.as_deref();
@@ -84,13 +85,13 @@ pub(super) fn prepare<'a>(
 pub(super) fn check(scene: &SceneFile, registry: &Registry) -> Diagnostics {
     let mut diagnostics = scene.diagnostics();
     let known = Known::of(registry, &scene.scene);
-    prepare(scene, &Options::default(), &known, &mut World::new(), &mut diagnostics);
+    prepare(scene, (&Options::default(), None), &known, &mut World::new(), &mut diagnostics);
     diagnostics
 }
 
 /// The clock with its step, what is known of the stable step, and how many steps the scene lasts.
 fn clock(
-    scene: &SceneFile,
+    (scene, springs): (&SceneFile, Option<SolvedSprings>),
     known: &Known<'_>,
     world: &mut World,
     diagnostics: &mut Diagnostics,
@@ -106,8 +107,8 @@ fn clock(
             damping: 0.0,
             force_scale: 1.0,
         };
-        let springs = SolvedSprings { step: bound.time_step, forces: SpringForces::Stepped };
-        let springs = scene.scene.rests_on_springs().then_some(springs);
+        let own = SolvedSprings { step: bound.time_step, shared: false, forces: SpringForces::Stepped };
+        let springs = scene.scene.rests_on_springs().then(|| springs.unwrap_or(own));
         let clock =
             Clock { relaxation: Some(relaxation), springs, ..Clock::with_step(scene.scene.duration * ramp_rate) };
         return Some((clock, Stability::of_rest(bound), max_steps));
@@ -118,7 +119,8 @@ fn clock(
         // chosen steps end where the scene does
         let steps = if adaptive.is_some() { (steps - WHOLE).ceil() } else { steps.round() }.max(1.0) as u64;
         let touches = !scene.scene.contacts.is_empty() || !scene.scene.attachments.is_empty();
-        let springs = touches.then_some(SolvedSprings { step: bound.time_step, forces: SpringForces::Tried });
+        let springs =
+            touches.then_some(SolvedSprings { step: bound.time_step, shared: false, forces: SpringForces::Tried });
         let clock = Clock { velocities_at_ends: true, springs, ..Clock::with_step(step) };
         return Some((clock, Stability::of_implicit(bound, step, scheme), steps));
     }

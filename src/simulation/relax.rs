@@ -5,6 +5,8 @@
 //! it, c = 2ω (Underwood 1983). Forces count less where elements are squeezed, which raises the highest frequency.
 //! Steps that end in numbers that are not finite or in elements turned inside out are taken back.
 
+mod again;
+
 use super::ScheduledPass;
 use super::Simulation;
 use super::explain::SolverInUse;
@@ -203,7 +205,7 @@ impl Relaxing {
         let clock = *world.resource::<Clock>();
         let Some(mut relaxation) = clock.relaxation else { return Ok(()) };
         if let Some(newton) = self.newton.as_mut().filter(|newton| newton.below.is_infinite()) {
-            self.next_check = CHECK_STEPS.min(self.most_steps);
+            self.next_check = CHECK_STEPS.max(clock.step + 1).min(self.most_steps);
             let turns = world.resource::<Signals>().largest_turn(relaxation.end);
             if turns > FAR_TURN && !newton.statics.follows_path() {
                 newton.below = BEGIN_AGAIN;

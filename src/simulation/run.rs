@@ -163,7 +163,7 @@ impl Simulation {
     }
 
     /// From one of the threads that work, where there are several.
-    fn on_threads(&mut self, task: impl FnOnce(&mut Self) -> Result<(), Error> + Send) -> Result<(), Error> {
+    pub(super) fn on_threads(&mut self, task: impl FnOnce(&mut Self) -> Result<(), Error> + Send) -> Result<(), Error> {
         match self.world.resource::<Cpu>().pool().filter(|_| !self.facts.on_gpu) {
             Some(pool) => pool.install(|| task(self)),
             None => task(self),

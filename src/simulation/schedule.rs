@@ -1,8 +1,9 @@
 //! The order of systems: as the scene writes it, or derived from what the scene contains.
 
 use super::known::Known;
+use crate::components::Clock;
 use crate::scene::{Diagnostics, choice};
-use crate::systems::{Phase, System};
+use crate::systems::{Phase, System, criterion_steps};
 use bevy_ecs::prelude::*;
 
 /// A system of the schedule, and why it is there.
@@ -22,7 +23,9 @@ pub struct Scheduled<'a> {
 impl<'a> Scheduled<'a> {
     fn new(system: &'a System, because: String, world: &World) -> Self {
         let on_device = system.device.is_some() && (system.device_when)(world);
-        Self { system, because, every: system.every.max(1), interval: None, on_device }
+        // those of the engine that do not run in every step look at criteria
+        let most = if system.custom { u64::MAX } else { criterion_steps(world.resource::<Clock>()) };
+        Self { system, because, every: system.every.clamp(1, most), interval: None, on_device }
     }
 }
 

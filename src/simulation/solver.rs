@@ -9,6 +9,7 @@ use super::follow::Follower;
 use super::implicit::{Implicit, OfForces, StepControl};
 use super::relax::Relaxing;
 use super::stable_step::Stability;
+use super::step_change::add_memories_before;
 use crate::components::{Clock, Precision};
 use crate::error::Error;
 use crate::scene::schema::{self, Scene};
@@ -28,6 +29,7 @@ impl Solver {
     /// What the scene asks for, before anything is on a device.
     pub fn of(scene: &Scene, precision: Precision, world: &mut World) -> Self {
         if let Some(implicit) = Implicit::of(scene, world) {
+            add_memories_before(world);
             return Self::Implicit(Box::new(implicit));
         }
         Relaxing::of(scene, precision, world).map_or(Self::Explicit(None), Self::Relaxation)

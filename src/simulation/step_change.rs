@@ -83,18 +83,23 @@ fn scale_increments(counted: &[ColumnAccess], factor: f64, world: &mut World) {
 }
 
 /// The recursions of viscous materials take the coefficients of the new step. The memory of the exact one, H − φS,
-/// holds a coefficient of the old step too: what it stands for stays the same.
+/// holds a coefficient of the old step too: what it stands for stays the same. So does the stress at the end of an
+/// implicit step, which memories before it tell of.
 fn relax_on(world: &mut World, clock: &Clock) -> Result<(), Error> {
     for (entity, law) in laws_of_step(world, clock) {
         let Some(before) = world.get::<BlockLaw<f64>>(entity).cloned() else { continue };
-        let aim = |law: &BlockLaw<f64>, copy: Option<usize>, place: usize| {
+        let then = |copy: Option<usize>, place: usize| {
             let of_copy =
                 copy.zip(law.copies.as_ref()).and_then(|(copy, copies)| copies.of_copy[copy].terms.get(place));
-            let of_all = || law.prony.iter().chain(&law.volumetric).nth(place);
-            of_copy.or_else(of_all).map_or(0.0, |term| term.aim)
+            of_copy.or_else(|| law.prony.iter().chain(&law.volumetric).nth(place)).copied()
         };
-        let changes = before.with_terms(|copy, place, term| PronyTerm::adding(aim(&law, copy, place) - term.aim));
-        add_to_memory_by(world, entity, changes);
+        let aim = |copy: Option<usize>, place: usize| then(copy, place).map_or(0.0, |term| term.aim);
+        let changes = before.with_terms(|copy, place, term| PronyTerm::adding(aim(copy, place) - term.aim));
+        let kept = before.with_terms(|copy, place, term| {
+            then(copy, place).map_or(PronyTerm::adding(0.0), |then| PronyTerm::keeping(term, &then))
+        });
+        carry_memory_on(world, entity, &changes);
+        carry_memory_before_on(world, entity, &kept);
         take_law(world, entity, law)?;
     }
     Ok(())
@@ -115,8 +120,10 @@ pub(super) fn remember_the_start(world: &mut World) {
 }
 
 /// The memories of blocks that have stood as they stand for long: each has come to its aim, aim·S, which takes αS from
-/// the stress whatever the step is. They must be 0 before.
+/// the stress whatever the step is.
 pub(super) fn relax_fully(world: &mut World) {
+    world.query::<&mut ViscousMemory>().iter_mut(world).for_each(|mut memory| memory.0.bytes_mut().fill(0));
+    world.query::<&mut MemoryBefore>().iter_mut(world).for_each(|mut memory| memory.0.bytes_mut().fill(0));
     remember(world, |term| term.aim);
 }
 
@@ -161,20 +168,57 @@ fn take_law(world: &mut World, entity: Entity, law: BlockLaw<f64>) -> Result<(),
     Ok(())
 }
 
-/// Adds to a block's memory what a law adds whose terms do just that, by the block's own kernel.
+/// Adds to a block's memory what a law adds whose terms do just that, and to that before the last step.
 pub(super) fn add_to_memory_by(world: &mut World, entity: Entity, adding: BlockLaw<f64>) {
-    if world.get::<ViscousMemory>(entity).is_none() {
-        return;
+    carry_memory_on(world, entity, &adding);
+    carry_memory_before_on(world, entity, &adding);
+}
+
+/// Carries a block's memory on by a law, where it has one.
+fn carry_memory_on(world: &mut World, entity: Entity, law: &BlockLaw<f64>) {
+    let of: &World = world;
+    let carried = of.get::<ViscousMemory>(entity).and_then(|memory| carried_on(of, entity, law, &memory.0));
+    if let (Some(carried), Some(mut memory)) = (carried, world.get_mut::<ViscousMemory>(entity)) {
+        memory.0 = carried;
     }
-    let added = BlockForces::of(world, entity, |_| adding.clone()).and_then(|mut block| {
-        let body = block.block.body;
-        let displacement = widened(world.get::<Displacement>(body)?);
-        let mut unused = vec![0.0; world.get::<ElementForce>(body)?.len()];
-        block.forces(world.resource::<Cpu>(), &displacement, &mut unused);
-        Some(block.memory)
-    });
-    if let (Some(added), Some(mut memory)) = (added, world.get_mut::<ViscousMemory>(entity)) {
-        memory.0 = Reals::from_f64(memory.precision(), added.into_iter());
+}
+
+/// The same of that before the last step.
+fn carry_memory_before_on(world: &mut World, entity: Entity, law: &BlockLaw<f64>) {
+    let of: &World = world;
+    let carried = of.get::<MemoryBefore>(entity).and_then(|memory| carried_on(of, entity, law, &memory.0));
+    if let (Some(carried), Some(mut memory)) = (carried, world.get_mut::<MemoryBefore>(entity)) {
+        memory.0 = carried;
+    }
+}
+
+/// A memory of a block as a law carries it on, by the block's own kernel.
+fn carried_on(world: &World, entity: Entity, law: &BlockLaw<f64>, memory: &Reals) -> Option<Reals> {
+    let mut block = BlockForces::of(world, entity, |_| law.clone())?;
+    block.memory = widened(memory).into_owned();
+    let body = block.block.body;
+    let displacement = widened(world.get::<Displacement>(body)?);
+    let mut unused = vec![0.0; world.get::<ElementForce>(body)?.len()];
+    block.forces(world.resource::<Cpu>(), &displacement, &mut unused);
+    Some(Reals::from_f64(memory.precision(), block.memory.into_iter()))
+}
+
+/// Gives viscous blocks a memory of before the last step, which is the present one where there was none.
+pub(super) fn add_memories_before(world: &mut World) {
+    let blocks: Vec<(Entity, Reals)> = world
+        .query::<(Entity, &ViscousMemory)>()
+        .iter(world)
+        .map(|(entity, memory)| (entity, memory.0.clone()))
+        .collect();
+    for (entity, memory) in blocks {
+        world.entity_mut(entity).insert(MemoryBefore(memory));
+    }
+}
+
+/// Keeps memories that are about to be carried on, where somebody looks at them afterwards.
+pub(super) fn keep_memories(world: &mut World) {
+    for (memory, mut before) in world.query::<(&ViscousMemory, &mut MemoryBefore)>().iter_mut(world) {
+        before.0.bytes_mut().copy_from_slice(memory.0.bytes());
     }
 }
 

@@ -17,9 +17,20 @@ pub(crate) struct HeldNode {
     tool_step: DVec3,
     /// Where its numbers begin in [`ToolHold`].
     at: usize,
+    /// Whether the tool closes in this step.
+    taken: bool,
     /// The force at which it slips out (N), and whether a hand feels it.
     strength: f64,
     felt: bool,
+}
+
+/// What a tool gives to a node that it holds, in a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Given {
+    /// What the node gets (J).
+    pub work: f64,
+    /// What is lost beside where the tool closes in this step (J): it has another velocity at once.
+    pub by_a_jolt: f64,
 }
 
 /// Which nodes closed tools hold in the step that begins, where signals are those of the step; notes what closes and
@@ -39,6 +50,7 @@ pub(crate) fn held_in_step(world: &mut World) -> Vec<HeldNode> {
                 let at = grasps.numbers() * place + grasps.numbers_a_grasp() * number;
                 let [pose, change] = [0, 3].map(|slot| Pose::of_slots(&values[grasp.tool.signal + slot..]));
                 let closed = values[grasp.closed][1] > 0.0 && mass.get(row) > 0.0;
+                let taken = ToolHold::is_open(hold.get(at + 3));
                 if !follows(grasp, &mut hold, at, closed, pose.less(&change).inverse(at_rest + u.vector(row))) {
                     continue;
                 }
@@ -46,7 +58,7 @@ pub(crate) fn held_in_step(world: &mut World) -> Vec<HeldNode> {
                 let displacement = pose.place(of_tool) - at_rest;
                 let tool_step = change.place(of_tool);
                 let (strength, felt) = (grasp.strength, grasps.felt);
-                last = Some(HeldNode { body, row, displacement, tool_step, at, strength, felt });
+                last = Some(HeldNode { body, row, displacement, tool_step, at, taken, strength, felt });
                 held.push((at, pose));
             }
             // whom the last one lets go the others take up where it is then
@@ -86,17 +98,22 @@ fn follows(grasp: &Grasp, hold: &mut ToolHold, at: usize, closed: bool, of_tool:
     holds
 }
 
-/// Notes with which force (N) a tool holds a node at the end of the step. Whom it takes more to hold than it can slips
-/// out in the next one: not at rest, nor where it takes the node in this step, by an impulse.
-pub(crate) fn note_held(world: &mut World, node: &HeldNode, force: DVec3) {
+/// Notes with which force (N) a tool holds a node at the end of the step, and what it gives by that; at rest by the
+/// mean of its forces. Whom it takes more to hold than it can slips out in the next one: not at rest, nor where it
+/// takes the node in this step, by an impulse.
+pub(crate) fn note_held(world: &mut World, node: &HeldNode, force: DVec3, given: Option<Given>) {
     let moves = world.resource::<Clock>().relaxation.is_none();
     let Some(mut hold) = world.get_mut::<ToolHold>(node.body) else { return };
     let at = node.at;
     let before = hold.vector_at(at);
-    let mean = 0.5 * (before + force);
+    let at_rest = Given { work: 0.5 * (before + force).dot(node.tool_step), by_a_jolt: 0.0 };
+    let Given { work, by_a_jolt } = given.unwrap_or(at_rest);
+    let lost = if node.taken { by_a_jolt } else { 0.0 };
     hold.set_vector_at(at, force);
-    let work = hold.get(at + 4) + mean.dot(node.tool_step);
-    hold.set(at + 4, work);
+    for (number, part) in [(at + 4, work + lost), (at + 5, lost)] {
+        let sum = hold.get(number) + part;
+        hold.set(number, sum);
+    }
     if node.felt {
         let felt = hold.vector_at(at + HOLD_NUMBERS) + force;
         hold.set_vector_at(at + HOLD_NUMBERS, felt);

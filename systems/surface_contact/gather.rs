@@ -17,7 +17,7 @@ pub(super) const OUT: f64 = 0.1;
 
 /// Points of faces share their nodes' masses while they are no farther from touching than this, in the smaller edges of
 /// both bodies: who shares stays the same from step to step then, and pressures come to rest.
-const SHARES: f64 = 1e-3;
+pub(super) const SHARES: f64 = 1e-3;
 
 /// Nodes that a task foresees.
 const NODES_A_TASK: usize = 1024;
@@ -110,6 +110,8 @@ struct Nodes<'a> {
     slots: &'a [u32],
     steps: &'a [DVec4],
     earlier: &'a [DVec4],
+    /// [`IntegrationCoefficients::work_factor`].
+    work_factor: f64,
 }
 
 impl Nodes<'_> {
@@ -148,7 +150,10 @@ impl Nodes<'_> {
         let step = parts.step(self.steps);
         let (gap, ends) = match spring {
             None => (gap, gap + normal.dot(step)),
-            Some(spring) => (spring.gap(outside, normal.dot(parts.step(self.earlier))), outside),
+            Some(spring) => {
+                let outwards = normal.dot(parts.step(self.earlier));
+                (self.work_factor * spring.gap(outside, outwards), outside)
+            }
         };
         if ends < within {
             let mut contact = Contact::new(parts, (normal, gap, step), resists);
@@ -182,7 +187,8 @@ pub(super) fn gather<T: Scalar>(
     bodies: &mut [BodySlices<'_, T>],
 ) {
     let Gathered { set: ContactSet { batches, steps, earlier, .. }, slots, seen, facing, .. } = gathered;
-    let nodes = Nodes { slots, steps, earlier };
+    let work_factor = IntegrationCoefficients::<f64>::of(clock).work_factor;
+    let nodes = Nodes { slots, steps, earlier, work_factor };
     let of_bodies = &*bodies;
     face(contacts, reach, cpu, batches.iter_mut().zip(&mut *seen), |contacts, point, faced, (batch, seen)| {
         let Some(first) = &faced.first else { return };

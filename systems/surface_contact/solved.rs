@@ -1,7 +1,7 @@
 //! Bodies in implicit steps: springs, whose forces are those at the end of the step that is solved for.
 
 use super::body_slices::{BodySlices, Kept, set_vector, vector_at};
-use super::gather::{Gathered, allowed};
+use super::gather::{Gathered, SHARES, allowed};
 use super::meet::{FACES, SLIDES, STICKS, forget, push, release};
 use super::{Meeting, SurfaceContacts, crossings, faced};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
@@ -174,6 +174,7 @@ pub(super) fn press<T: Scalar>(
     let mut solved = std::mem::take(&mut contacts.surface.solved);
     solved.clear();
     let pairs = std::mem::take(&mut contacts.surface.pairs);
+    let shares = springs.shared.then(|| shares_of(contacts, &gathered, &pairs));
     for pair in &pairs {
         let gap = pair.gap(&contacts.surface.places);
         if pair.first {
@@ -183,7 +184,11 @@ pub(super) fn press<T: Scalar>(
         if gap > 0.0 {
             continue;
         }
-        add(contacts, &mut gathered, (pair, gap), (springs, time), bodies, &mut solved);
+        let mass = match &shares {
+            Some(shares) => shared_mass(contacts, pair, (&gathered, &shares[..]), bodies),
+            None => mass_of_point(contacts, pair, bodies),
+        };
+        add(contacts, &mut gathered, (pair, gap, mass), (springs, time), bodies, &mut solved);
     }
     if springs.forces.are_noted() {
         gathered.set.find_forces(cpu);
@@ -195,12 +200,61 @@ pub(super) fn press<T: Scalar>(
     (contacts.surface.gathered, contacts.surface.pairs, contacts.surface.solved) = (gathered, pairs, solved);
 }
 
-/// Adds the contact of a pair with such a gap (m), with its force, of springs in steps of such a time (s). The mass
-/// that a spring presses on is that of the point.
+/// The mass of the point of a pair (kg).
+fn mass_of_point<T: Scalar>(contacts: &SurfaceContacts, pair: &Pair, bodies: &[BodySlices<'_, T>]) -> f64 {
+    let of_point = pair.nodes.iter().filter(|(_, weight)| *weight > 0.0);
+    let mass = |&(node, weight): &(u32, f64)| {
+        let (body, row) = contacts.surface.nodes[node as usize];
+        weight * bodies[body as usize].weighs[row as usize].to_f64()
+    };
+    of_point.map(mass).sum()
+}
+
+/// Into how many shares the mass of each node in the set is split, by the weights of all that touches there; points of
+/// faces count that are about to, as in explicit steps.
+fn shares_of(contacts: &SurfaceContacts, gathered: &Gathered, pairs: &[Pair]) -> Vec<f64> {
+    let surface = &contacts.surface;
+    let mut shares = vec![0.0; gathered.set.steps.len()];
+    for pair in pairs {
+        let is_of_face = surface.points[pair.point as usize].triangle.is_some();
+        let within = if is_of_face { SHARES * pair.meeting.edge } else { 0.0 };
+        if pair.gap(&surface.places) <= within {
+            for &(node, weight) in &pair.nodes {
+                shares[gathered.slots[node as usize] as usize] += weight.abs();
+            }
+        }
+    }
+    shares
+}
+
+/// The mass (kg) that resists a force between a point and what it faces along the normal, with the shares of nodes; 0
+/// where none can be moved.
+fn shared_mass<T: Scalar>(
+    contacts: &SurfaceContacts,
+    pair: &Pair,
+    (gathered, shares): (&Gathered, &[f64]),
+    bodies: &[BodySlices<'_, T>],
+) -> f64 {
+    let mut yields = 0.0;
+    for &(node, weight) in &pair.nodes {
+        let (body, row) = contacts.surface.nodes[node as usize];
+        let (of_body, row) = (&bodies[body as usize], row as usize);
+        let mass = of_body.weighs[row].to_f64();
+        if mass > 0.0 {
+            let free = DVec3::from_array([0, 1, 2].map(|axis| f64::from(1 - (of_body.axes[row] >> axis & 1))));
+            let share = weight.abs() * shares[gathered.slots[node as usize] as usize];
+            yields += share * pair.normal.dot(free * pair.normal) / mass;
+        }
+    }
+    if yields > 0.0 { 1.0 / yields } else { 0.0 }
+}
+
+/// Adds the contact of a pair with such a gap (m), with its force, of springs that press on such a mass (kg) in steps
+/// of such a time (s).
 fn add<T: Scalar>(
     contacts: &SurfaceContacts,
     gathered: &mut Gathered,
-    (pair, gap): (&Pair, f64),
+    (pair, gap, mass): (&Pair, f64, f64),
     (springs, time): (&SolvedSprings, f64),
     bodies: &mut [BodySlices<'_, T>],
     all: &mut Vec<Slopes>,
@@ -212,13 +266,9 @@ fn add<T: Scalar>(
     let state = touch[4].to_f64();
     let slip = if first && state >= STICKS { vector_at(touch, 0) } else { DVec3::ZERO };
     let friction = meeting.friction[usize::from(state == SLIDES)];
-    let (mut parts, mut mass) = (Parts::default(), 0.0);
+    let mut parts = Parts::default();
     for &(node, weight) in &pair.nodes {
         parts.add(gathered.slots[node as usize], weight);
-        if weight > 0.0 {
-            let (body, row) = contacts.surface.nodes[node as usize];
-            mass += weight * bodies[body as usize].weighs[row as usize].to_f64();
-        }
     }
     let relative = parts.step(&gathered.set.earlier);
     let mut contact = Contact::new(parts, (normal, gap, relative), (friction, slip));

@@ -24,6 +24,32 @@ const TAKEN: &str = "tools: {\"tip\": (shape: Tube(length: 0.03, inner: 4e-3, ou
 const FLAT: &str = "tools: {\"tip\": (shape: Plane(), rotation: (180, 0, 0), at: (0, 0, 0.0101), moves: [(displacement: (1e-3, 0, -1e-3), curve: Smooth(end: 0.08))])},
     contacts: [Tool(tool: \"tip\", friction: 0.3)]";
 
+/// The same .3 mm inside of all copies.
+const INSIDE: &str =
+    "tools: {\"tip\": (shape: Plane(), rotation: (180, 0, 0), at: (0, 0, 9.7e-3))}, contacts: [Tool(tool: \"tip\")]";
+
+/// What begins inside a tool comes out while a wave goes through the body: of copies through one of them, however many
+/// there are and however far apart.
+#[test]
+fn copies_come_out_of_a_tool_as_fast_as_the_body_by_itself() {
+    for run in cpu_and_long_gpu() {
+        let mut alone = blocks(&run, "Hex8", "", INSIDE);
+        let mut copies = blocks(&run, "Hex8", "copies: 3, apart: (0.1, 0, 0)", INSIDE);
+        for time in [5e-4, 1e-3, 2e-3, 5e-3] {
+            for simulation in [&mut alone, &mut copies] {
+                simulation.advance_to(time).unwrap();
+            }
+            let (one, all) = (alone.displacements("b").unwrap(), copies.displacements("b").unwrap());
+            let largest = one.iter().map(|u| u.length()).fold(0.0, f64::max);
+            assert!(largest > 5e-5, "{}, {time} s: {largest} m", run.name);
+            for (copy, own) in all.chunks(one.len()).enumerate() {
+                let off = own.iter().zip(&one).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+                near(&format!("{}, {time} s, copy {copy}", run.name), off, 0.0, largest, run.bound(1e-9, 1e-3));
+            }
+        }
+    }
+}
+
 /// On a GPU places are counted in f32 from the middle of the body: of copies that stand so far from each other that
 /// gaps lose their digits it is told. The CPU counts them in f64.
 #[test]

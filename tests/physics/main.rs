@@ -46,6 +46,8 @@ mod implicit_orders;
 mod implicit_partners;
 mod implicit_parts;
 mod implicit_products;
+mod implicit_removal;
+mod implicit_stress;
 mod implicit_tetrahedron;
 mod implicit_trials;
 mod inputs;

@@ -98,6 +98,21 @@ fn a_column_that_is_about_to_buckle_is_told_of() {
     }
 }
 
+/// Where all nodes are moved as told there is no motion that bodies might give way along.
+#[test]
+fn where_no_axis_is_free_nothing_gives_way() {
+    let (_, mut simulation) = rest(
+        "(duration: 1, analysis: Static(method: Newton),
+        bodies: {\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2), elements: Hex8), material: \"m\")},
+        materials: {\"m\": (density: 1000, neo_hookean: Young(young: 1e4, poisson: 0.3))},
+        constraints: [Prescribed(on: All, gradient: ((0.1, 0, 0), (0, 0, 0), (0, 0, 0)))])",
+        Precision::F64,
+    );
+    assert!(!simulation.equilibrium().unwrap().unstable);
+    let warned = simulation.summary("finished").unwrap().guards.warnings;
+    assert!(warned.is_empty(), "{warned:?}");
+}
+
 /// What is told of a block that is held so, under such loads.
 fn told(constraints: &str, loads: &str) -> Result<(), Error> {
     let mut simulation = start(

@@ -225,6 +225,10 @@ fn what_is_wrong_with_a_free_tool_is_told_with_what_is_allowed() {
         let found = told(&ball("free: (mass: 1)"), TOUCH, more);
         assert!(found.contains("has no free tools: what rests on tissue depends on the way there"), "{found}");
     }
+    // whom the steps do not move it does not help to leave the law of its contact out
+    let found =
+        told(&ball("free: (mass: 1)"), "Tool(tool: \"rod\", law: Penalty(share: 1))", "solver: Implicit(step: 0.01),");
+    assert_eq!(found, "4: error: implicit steps do not move free tools | use `solver: Explicit`");
     let grasp = "attachments: [Grasp(tool: \"rod\", closed: Step())], ";
     let found = told(&ball("free: (mass: 1)"), TOUCH, grasp);
     assert!(found.contains("4: error: `rod` is `free`, and grasps | a free tool touches, and does no more"), "{found}");

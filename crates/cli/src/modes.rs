@@ -10,7 +10,7 @@ use sinew::components::Authoring;
 use sinew::glam::DVec3;
 use sinew::mesh::Cells;
 use sinew::output::{Array, Folder, Frame, Series, Values, summary};
-use sinew::scene::schema::Picture;
+use sinew::scene::schema::{Attachment, Contact, Picture, Scene};
 use sinew::{BackendChoice, Mode, Options, Simulation};
 use sinew_pictures::render::{RenderOptions, draw};
 use std::fs;
@@ -43,6 +43,9 @@ pub fn command(arguments: &ModesArguments) -> Outcome {
         ..Options::default()
     };
     let mut simulation = progress::during("building the simulation", || Simulation::new(&scene, &options))?;
+    if let Some(left_out) = left_out(simulation.scene()) {
+        terminal::aside(&left_out);
+    }
     let modes = progress::during("looking for the lowest frequencies", || simulation.modes(arguments.count.into()))?;
     if arguments.json {
         let text = serde_json::to_string_pretty(&modes).map_err(|error| Failure::Silent(error.into()))?;
@@ -61,6 +64,51 @@ pub fn command(arguments: &ModesArguments) -> Outcome {
     terminal::say(&format!("see them    {}; in ParaView {folder}/fields.pvd, a mode a frame\n", animation.display()))
 }
 
+/// Names of a kind that are told; of more their number.
+const TOLD: usize = 4;
+
+/// That there is more to hold bodies than modes know of, if there is.
+fn left_out(scene: &Scene) -> Option<String> {
+    let mut kinds: [(&str, Vec<String>); 5] =
+        ["glue", "ties", "sutures", "grasps", "contact"].map(|kind| (kind, Vec::new()));
+    for (number, attachment) in scene.attachments.iter().enumerate() {
+        let kind = match attachment {
+            Attachment::Glue { .. } => 0,
+            Attachment::Tie { .. } => 1,
+            Attachment::Suture { .. } => 2,
+            Attachment::Grasp { .. } => 3,
+        };
+        let name = attachment.name(number).or_else(|| attachment.tool().cloned());
+        kinds[kind].1.push(format!("`{}`", name.unwrap_or_default()));
+    }
+    kinds[4].1 = scene.contacts.iter().map(of_whom).collect();
+    let told = |(kind, names): &(&str, Vec<String>)| {
+        let more = if names.len() > TOLD { format!(" and {} more", names.len() - TOLD) } else { String::new() };
+        let told = names.iter().take(TOLD).map(String::as_str).collect::<Vec<_>>().join(", ");
+        format!("{kind} ({told}{more})")
+    };
+    let told: Vec<String> = kinds.iter().filter(|(_, names)| !names.is_empty()).map(told).collect();
+    if told.is_empty() {
+        return None;
+    }
+    Some(format!(
+        "warning: modes are those of bodies without what else holds them in this scene: {}. Frequencies, and damping and \
+         ramps by them, are too low for what is held so, or not those of the assembly; `Fixed` where they hold shows what \
+         they do\n",
+        told.join(", ")
+    ))
+}
+
+/// Who touches in a contact.
+fn of_whom(contact: &Contact) -> String {
+    match contact {
+        Contact::Tool { tool, .. } => format!("with `{tool}`"),
+        Contact::Between { bodies: (a, b), .. } => format!("between `{a}` and `{b}`"),
+        Contact::Itself { body: Some(body), .. } => format!("of `{body}` with itself"),
+        Contact::Itself { body: None, .. } => "of the body with itself".into(),
+    }
+}
+
 /// A line for each mode, and what follows from the lowest; `limit` is the stable step (s).
 fn table(modes: &[Mode], limit: Option<f64>) -> String {
     let mut text = String::from("mode  frequency     period        moves of all mass along x, y, z\n");
@@ -75,7 +123,7 @@ fn table(modes: &[Mode], limit: Option<f64>) -> String {
     let Some(lowest) = modes.iter().map(|mode| mode.frequency).find(|frequency| *frequency > 0.0) else {
         text += match modes.len() {
             0 => "nothing can move\n",
-            _ => "all of these are rigid motion: nothing holds a body; ask for more with --count\n",
+            _ => "all of these are rigid motion: no constraint holds a body; ask for more with --count\n",
         };
         return text;
     };

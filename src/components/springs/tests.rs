@@ -1,6 +1,6 @@
 use super::*;
 
-const SPRINGS: SolvedSprings = SolvedSprings { step: 1e-3, forces: SpringForces::Tried };
+const SPRINGS: SolvedSprings = SolvedSprings { step: 1e-3, shared: false, forces: SpringForces::Tried };
 const MASS: f64 = 2e-3;
 const TIME: f64 = 1e-2;
 

@@ -328,8 +328,10 @@ fn law(scene_: &Scene, validator: &mut Validator, path: &Path, contact: &Contact
         let message = format!("a spring has one force, and not one of {sweeps} sweeps");
         validator.out.error_at(path, message).note("leave `sweeps` out");
     }
+    // implicit steps do not move it at all, which is told with the tool
     if let Contact::Tool { tool, .. } = contact
         && scene_.tools.get(tool).is_some_and(|tool| tool.free.is_some())
+        && !scene_.is_implicit()
     {
         validator
             .out

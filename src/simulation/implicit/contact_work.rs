@@ -1,10 +1,11 @@
 //! What contact takes in implicit steps, by how far nodes go, as all loads work: in implicit Euler alone that is where
-//! the velocity at the end leads.
+//! the velocity at the end leads; and whether friction has a part in it.
 
 use super::axes::Axes;
 use super::place::Place;
+use crate::backend::device::bring_to_host;
 use crate::components::*;
-use crate::systems::{count_surface_work, count_tool_work};
+use crate::systems::{SurfaceContacts, count_surface_work, count_tool_work};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -31,4 +32,32 @@ impl TouchedBefore {
         count_surface_work(world, &self.by_surfaces, first_axis, moved);
         count_tool_work(world, &self.by_tools, first_axis, moved);
     }
+}
+
+/// Whether something touches that friction may hold, in the last step that was taken.
+pub(super) fn rubs(world: &mut World) -> bool {
+    let wanted = [SurfaceTouch::NAME, FaceTouch::NAME, ToolTouch::NAME];
+    // who cannot look says nothing
+    if bring_to_host(world, |_, name| wanted.contains(&name)).is_err() {
+        return false;
+    }
+    let has_friction = |[sticking, sliding]: [f64; 2]| sticking.max(sliding) > 0.0;
+    let any = |of: &Reals, number: usize, stride: usize, touches: f64| {
+        (number..of.len()).step_by(stride).any(|at| of.get(at) >= touches)
+    };
+    for (contacts, touch) in world.query::<(&ToolContacts, &ToolTouch)>().iter(world) {
+        let (count, numbers) = (contacts.tools.len(), contacts.numbers_a_tool());
+        let mut rough = contacts.tools.iter().enumerate().filter(|(_, contact)| has_friction(contact.friction));
+        if rough.any(|(tool, _)| any(&touch.0, numbers * tool + 3, numbers * count, 1.0)) {
+            return true;
+        }
+    }
+    let are_rough =
+        |contacts: &SurfaceContacts| contacts.meetings.iter().flatten().any(|meeting| has_friction(meeting.friction));
+    let mut touches = world.query::<(&SurfaceTouch, Option<&FaceTouch>)>();
+    let touch = |(of_nodes, of_faces): (&SurfaceTouch, Option<&FaceTouch>)| {
+        any(&of_nodes.0, 4, MEETING_NUMBERS, 2.0)
+            || of_faces.is_some_and(|of_faces| any(&of_faces.0, 4, MEETING_NUMBERS, 2.0))
+    };
+    world.get_resource::<SurfaceContacts>().is_some_and(are_rough) && touches.iter(world).any(touch)
 }

@@ -19,7 +19,7 @@ use crate::components::{Displacement, Reals};
 use crate::error::Error;
 use bevy_ecs::prelude::*;
 use coarse::{Layout, turns};
-pub(super) use forces::{bring_state, send_state};
+pub(super) use forces::{bring_removal, bring_state, left, send_state};
 use kernels::{CoarseBuffers, EXTENT, Extent, Room, SOLVE_WORDS, Vectors};
 
 /// Iterations between two looks at whether a solve has ended: those that are too many cost passes, a look a wait for

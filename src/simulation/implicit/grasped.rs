@@ -1,10 +1,11 @@
 //! Axes that closed tools hold: held as if they were told where to go.
 
-use super::axes::{Axes, Motion, acceleration_before};
+use super::axes::{Axes, Motion};
+use super::forces_before::ForcesBefore;
 use super::place::Place;
 use super::to_go::ToGo;
-use crate::components::{DisplacementCompensation, ExternalForce, Grasps, InternalForce, Reals};
-use crate::systems::{HeldNode, held_in_step, note_held};
+use crate::components::{DisplacementCompensation, ExternalForce, Grasps, InternalForce, Reals, WORK_NUMBERS, Work};
+use crate::systems::{Given, HeldNode, held_in_step, note_held};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -52,20 +53,31 @@ impl Grasped {
     }
 
     /// Notes the forces of tools at the end of a step of h (s): what balances forces, damping and inertia there; at
-    /// rest forces alone.
-    pub fn note(&self, world: &mut World, place: &Place<'_>, net: &Reals) {
-        let Place { formula, h, motion, .. } = place;
+    /// rest, where nothing was before, forces alone. Tools work by what their nodes get, with the mean of the forces at
+    /// both ends as all do; the kinetic energy of that is added to the work of constraints, which has the rest.
+    pub fn note(&self, world: &mut World, place: &Place<'_>, net: &Reals, before: Option<&ForcesBefore>) {
+        let Place { h, motion, .. } = place;
         for (node, first, own) in &self.0 {
-            let of_axis = |i: usize| {
+            let (mut force, mut given, mut kinetic) = (DVec3::ZERO, Given::default(), 0.0);
+            for i in (0..3).filter(|&i| own[i]) {
                 let axis = first + i;
-                let acceleration = acceleration_before(world, node.body);
-                let (before, velocity) = (motion.velocity(axis), place.arrival(axis, acceleration(3 * node.row + i)).0);
+                // it is held: an acceleration before does not count, and at rest there is no velocity
+                let (began, ends) = (motion.velocity(axis), place.arrival(axis, 0.0).0);
                 let (mass, damping) = (motion.mass.get(axis / 3), motion.damping(axis));
-                let inertial = mass * (velocity - before) / h + damping * velocity;
-                let inertial = if formula.is_of_rest() { 0.0 } else { inertial };
-                if own[i] { net.get(axis) + inertial } else { 0.0 }
-            };
-            note_held(world, node, DVec3::from_array([0, 1, 2].map(of_axis)));
+                force[i] = net.get(axis) + mass * (ends - began) / h + damping * ends;
+                let Some(before) = before else { continue };
+                let balances = 0.5 * (before.net(axis) + net.get(axis) + damping * (began + ends));
+                let gains = 0.5 * mass * (ends * ends - began * began);
+                kinetic += gains;
+                given.work += balances * place.moved(axis) + gains;
+                given.by_a_jolt += 0.5 * mass * (ends - began).powi(2);
+            }
+            if let Some(mut work) = world.get_mut::<Work>(node.body) {
+                let of_constraints = WORK_NUMBERS * node.row + 2;
+                let sum = work.get(of_constraints) + kinetic;
+                work.set(of_constraints, sum);
+            }
+            note_held(world, node, force, before.map(|_| given));
         }
     }
 }

@@ -1,5 +1,6 @@
 //! What a step that is not found leaves as it was.
 
+use super::super::step_change::keep_memories;
 use super::axes::Axes;
 use super::forces_before::ForcesBefore;
 use crate::components::*;
@@ -16,6 +17,12 @@ fn is_tried(column: &ColumnAccess) -> bool {
 fn is_tried_at_rest(column: &ColumnAccess) -> bool {
     let moves = column.role == Role::State && column.subject == Subject::Motion;
     is_tried(column) || moves && column.increments != Increments::SecondHalf || column.subject == Subject::Touch
+}
+
+/// Whether forces at the end of a step go on from what a column had at its beginning, and it has another when the step
+/// is found.
+fn is_carried_on(column: &ColumnAccess) -> bool {
+    column.role == Role::State && [Subject::Memory, Subject::Touch].contains(&column.subject)
 }
 
 /// These columns as they were at the beginning of the step, and forces.
@@ -40,7 +47,10 @@ impl Kept {
     pub fn keep(&mut self, world: &mut World, axes: &Axes) {
         self.forces.read(world, axes);
         if self.columns.is_empty() {
-            self.columns = find(world, if self.of_rest { is_tried_at_rest } else { is_tried });
+            let tried: fn(&ColumnAccess) -> bool = if self.of_rest { is_tried_at_rest } else { is_tried };
+            // where elements may go, forces are taken once more
+            let loses = world.query::<&Alive>().iter(world).next().is_some();
+            self.columns = find(world, |column| tried(column) || loses && is_carried_on(column));
         }
         for (column, entity, bytes) in &mut self.columns {
             bytes.clear();
@@ -54,9 +64,20 @@ impl Kept {
         self.put_columns_back(world, |_| true);
     }
 
-    /// Puts memories back.
+    /// Puts memories back, and keeps them for who looks at stress once the step is taken.
     pub fn put_memories_back(&self, world: &mut World) {
         self.put_columns_back(world, |column| column.subject == Subject::Memory);
+        keep_memories(world);
+    }
+
+    /// Puts back what forces at the end of the step go on from, and keeps what was there: a second time all is as it
+    /// was.
+    pub fn exchange_carried_on(&mut self, world: &mut World) {
+        for (column, entity, bytes) in self.columns.iter_mut().filter(|(column, ..)| is_carried_on(column)) {
+            let now = (column.bytes)(world, *entity).unwrap_or_default().to_vec();
+            (column.write)(world, *entity, bytes);
+            *bytes = now;
+        }
     }
 
     fn put_columns_back(&self, world: &mut World, which: impl Fn(&ColumnAccess) -> bool) {

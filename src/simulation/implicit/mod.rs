@@ -44,6 +44,8 @@ use super::Simulation;
 use super::build::after_the_step;
 use crate::components::*;
 use crate::error::Error;
+use crate::systems::Phase;
+use device::{bring_removal, left};
 use step::Taken;
 
 impl Simulation {
@@ -75,12 +77,30 @@ impl Simulation {
             }
         }
         self.world.resource_mut::<Clock>().step = step + 1;
+        let before = left(&mut self.world);
         if self.facts.on_gpu {
-            return self.after_a_step_on_device(step);
+            return self.after_a_step_on_device(step, before);
         }
-        for entry in self.entries.iter_mut().filter(|entry| after_the_step(entry.phase)) {
+        self.run_after_the_step(step, |phase| phase < Phase::Observe)?;
+        self.renew_forces(step, before)?;
+        self.run_after_the_step(step, |phase| phase == Phase::Observe)?;
+        self.keep_what_is_due()
+    }
+
+    /// Runs what comes after an implicit step, of some phases.
+    fn run_after_the_step(&mut self, step: u64, which: impl Fn(Phase) -> bool) -> Result<(), Error> {
+        for entry in self.entries.iter_mut().filter(|entry| after_the_step(entry.phase) && which(entry.phase)) {
             entry.run_on_host(step, &mut self.world)?;
         }
-        self.keep_what_is_due()
+        Ok(())
+    }
+
+    /// Takes the forces at the end of an implicit step once more where elements have gone since, of so many.
+    pub(super) fn renew_forces(&mut self, step: u64, before: usize) -> Result<(), Error> {
+        if !bring_removal(&mut self.world, before)? {
+            return Ok(());
+        }
+        let Some(implicit) = self.solver.implicit_mut() else { return Ok(()) };
+        implicit.renew_forces(&mut self.world, &mut self.entries, step)
     }
 }

@@ -296,9 +296,10 @@ impl Newton<'_, '_> {
     }
 
     /// Whether bodies at w do not resist some motion: a solve meets it, whose right-hand side has a part of every one.
-    /// In f32, where differences of forces are not sharp enough, it is not asked for. The forces at w must be known.
+    /// In f32, where differences of forces are not sharp enough, it is not asked for, and where no axis is free there
+    /// is none. The forces at w must be known.
     pub fn gives_way(&mut self) -> Result<bool, Lost> {
-        if !self.is_f64() {
+        if !self.is_f64() || !self.motion.free.contains(&true) {
             return Ok(false);
         }
         fill_with_signs(&mut self.space.residual, &self.motion.free);

@@ -270,7 +270,7 @@ impl Statics {
             true => trial.noted_forces(&place, net)?,
             false => trial.forces(&place, net)?,
         };
-        grasped.note(trial.world, &place, net);
+        grasped.note(trial.world, &place, net, None);
         grasped.load(trial.world);
         place.arrive(axes, trial.world);
         Ok(rest)
@@ -304,7 +304,8 @@ fn begin(space: &mut Workspace, motion: &mut Motion) {
 /// That a path was not followed to its end.
 fn not_followed(world: &mut World, what: String) -> Error {
     world.resource_scope(|world, observer: Mut<Observer>| {
-        observer.unsolved(world, what, Criterion { value: None, ..Criterion::of("equilibrium") })
+        // there is no step that could be shorter
+        observer.unsolved(world, (what, false), Criterion { value: None, ..Criterion::of("equilibrium") })
     })
 }
 

@@ -3,7 +3,7 @@
 use super::super::ScheduledPass;
 use super::super::explain::SolverInUse;
 use super::axes::{Axes, Motion};
-use super::contact_work::TouchedBefore;
+use super::contact_work::{TouchedBefore, rubs};
 use super::device::{bring_state, send_state};
 use super::formula::Formula;
 use super::grasped::Grasped;
@@ -135,6 +135,36 @@ impl Implicit {
         Ok(Taken::Taken)
     }
 
+    /// Takes the forces at the end of a step once more, for elements have gone since: the next one begins with them. So
+    /// do the accelerations of nodes that have lost mass, where they are carried on.
+    pub fn renew_forces(&mut self, world: &mut World, passes: &mut [ScheduledPass], step: u64) -> Result<(), Error> {
+        bring_state(world)?;
+        let Self { axes, iterations, springs, .. } = self;
+        let Iterations { settings, motion, space, kept, report, .. } = &mut *iterations;
+        let (clock, masses) = (*world.resource::<Clock>(), motion.mass.clone());
+        let times = [clock.time_at(step), clock.time_at(step + 1)];
+        world.resource_mut::<Signals>().evaluate((times[1], times[1]), times);
+        Springs::seek(world)?;
+        axes.read(world, motion);
+        // forces at the end go on from memories and slip of the beginning
+        kept.exchange_carried_on(world);
+        set_trying(world, true);
+        let mut trial = Trial { world, passes, axes, springs, step, count: 0, elsewhere: false };
+        trial.present_forces(&mut space.net)?;
+        trial.springs.press(1.0, &motion.free, &mut space.net);
+        if settings.formula.needs_acceleration() {
+            accelerate(&mut trial, motion, &space.net, |node| motion.mass.get(node) != masses.get(node));
+        }
+        kept.forces.read(trial.world, axes);
+        trial.springs.load(&mut kept.forces.external);
+        kept.forces.put_back(trial.world, axes);
+        kept.exchange_carried_on(trial.world);
+        set_trying(trial.world, false);
+        trial.world.resource_mut::<Clock>().springs = clock.springs;
+        report.passes += trial.count;
+        send_state(trial.world)
+    }
+
     /// Finds the end of the step, and takes it unless its error is too large. Gives the share of the residual that is
     /// left, if it was taken.
     fn find(&mut self, world: &mut World, passes: &mut [ScheduledPass], clock: &Clock) -> Result<Option<f64>, Lost> {
@@ -168,7 +198,7 @@ impl Implicit {
         if taken {
             keep_forces(&mut trial, h, iterations)?;
             let place = iterations.place(h);
-            grasped.note(trial.world, &place, &iterations.space.net);
+            grasped.note(trial.world, &place, &iterations.space.net, Some(&iterations.kept.forces));
             let count = if *works { add_work } else { add_internal_work };
             count(trial.world, axes, &iterations.kept.forces, &place);
             place.arrive(axes, trial.world);
@@ -190,14 +220,21 @@ fn begin(trial: &mut Trial<'_>, motion: &Motion, net: &mut Reals, formula: &Form
     Springs::seek(trial.world)?;
     trial.present_forces(net)?;
     trial.springs.press(1.0, &motion.free, net);
-    for (body, range) in trial.axes.each().filter(|_| formula.needs_acceleration()) {
+    if formula.needs_acceleration() {
+        accelerate(trial, motion, net, |_| true);
+    }
+    Ok(())
+}
+
+/// Gives the free axes of some nodes the accelerations that forces (N) and damping make there.
+fn accelerate(trial: &mut Trial<'_>, motion: &Motion, net: &Reals, which: impl Fn(usize) -> bool) {
+    for (body, range) in trial.axes.each() {
         let Some(mut accelerations) = trial.world.get_mut::<Acceleration>(body) else { continue };
-        for axis in range.clone().filter(|&axis| motion.free[axis]) {
+        for axis in range.clone().filter(|&axis| motion.free[axis] && which(axis / 3)) {
             let forces = net.get(axis) + motion.damping(axis) * motion.velocity(axis);
             accelerations.set(axis - range.start, -forces / motion.mass.get(axis / 3));
         }
     }
-    Ok(())
 }
 
 /// How far held axes go in the step (m), as `boundary` has written it.
@@ -235,6 +272,7 @@ fn keep_forces(trial: &mut Trial<'_>, h: f64, iterations: &mut Iterations) -> Re
 fn not_found(world: &mut World, what: String) -> Error {
     let clock = *world.resource::<Clock>();
     let found = format!("the implicit step from t = {} s was not found: {what}", clock.time());
+    let found = (found, rubs(world));
     world.resource_scope(|world, observer: Mut<Observer>| {
         observer.unsolved(world, found, Criterion { value: Some(clock.time_step), ..Criterion::of("implicit_step") })
     })

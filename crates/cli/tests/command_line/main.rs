@@ -10,6 +10,7 @@ mod ends;
 mod explains;
 mod interrupted;
 mod locked;
+mod modes;
 mod renders;
 mod runs;
 mod sweeps;

@@ -16,17 +16,29 @@ fn is_about(name: &str, subjects: &[Subject]) -> bool {
     column_is(name, |column| column.role != Role::Scratch && subjects.contains(&column.subject))
 }
 
-/// Brings the state to the host that a step begins with.
-pub(in super::super) fn bring_state(world: &mut World) -> Result<(), Error> {
-    let mut alive = world.query::<&Alive>();
-    let mut left = |world: &World| alive.iter(world).flat_map(|alive| &alive.0).filter(|&&alive| alive != 0).count();
-    let before = left(world);
-    let read = [Subject::Motion, Subject::Constraint, Subject::Removal, Subject::Inversion];
-    bring_to_host(world, |_, name| is_about(name, &read))?;
-    if left(world) != before {
+/// How many elements are there, of blocks that may lose some, as the host knows.
+pub(in super::super) fn left(world: &mut World) -> usize {
+    let mut all = world.query::<&Alive>();
+    all.iter(world).flat_map(|alive| &alive.0).filter(|&&alive| alive != 0).count()
+}
+
+/// Brings to the host which elements are there, and where some have gone since there were so many, what has changed
+/// with them. Whether some have.
+pub(in super::super) fn bring_removal(world: &mut World, before: usize) -> Result<bool, Error> {
+    bring_to_host(world, |_, name| is_about(name, &[Subject::Removal]))?;
+    let went = left(world) != before;
+    if went {
         bring_to_host(world, |_, name| is_about(name, &[Subject::Mass, Subject::Shape]))?;
     }
-    Ok(())
+    Ok(went)
+}
+
+/// Brings the state to the host that a step begins with.
+pub(in super::super) fn bring_state(world: &mut World) -> Result<(), Error> {
+    let before = left(world);
+    bring_removal(world, before)?;
+    let read = [Subject::Motion, Subject::Constraint, Subject::Memory, Subject::Inversion];
+    bring_to_host(world, |_, name| is_about(name, &read))
 }
 
 /// Sends the state to the device that a step has come to, or has gone back to.

@@ -173,7 +173,7 @@ pub const CASES: &[Case] = &[
     case!("h57" "sharp_edges" "edge across an edge, corner on an edge",
         "weight within 1e-3, a tenth of an edge deep at most", every, shapes::edges, SLIDING),
     case!("h58" "wound_columns" "two columns wound round each other", "none is in the other; volume within 3 %", every, shapes::wound, SLIDING, Slow::BOTH),
-    case!("h59" "pile" "pile of 12 cubes (in full 1000)", "weight within 1 %, energy falls, the same bits", every, shapes::pile, SLIDING),
+    case!("h59" "pile" "pile of 12 cubes (in full 1000)", "weight within 1 %, energy falls, the same bits", every, shapes::pile, SLIDING, Slow::BOTH),
     case!("h61" "grasp" "cube that is grasped, lifted, carried and let go",
         "weight within 1e-4; closing makes no energy, opening no momentum", every, holding::grasp, SLIDING),
     case!("h62" "suture" "thread and glue that are drawn until they tear",
