@@ -274,6 +274,12 @@ pub fn column_is(name: &str, which: impl Fn(&ColumnAccess) -> bool) -> bool {
     all_columns().iter().any(|column| column.name == name && which(column))
 }
 
+/// Whether any entity has a component. A query for it would ask for memory.
+pub(crate) fn is_anywhere<C: Component>(world: &World) -> bool {
+    let Some(component) = world.component_id::<C>() else { return false };
+    world.archetypes().iter().any(|archetype| !archetype.is_empty() && archetype.contains(component))
+}
+
 /// Every kind of column there is, as the modules declare them.
 pub fn all_columns() -> &'static [ColumnAccess] {
     static ALL: LazyLock<Vec<ColumnAccess>> = LazyLock::new(|| {

@@ -58,6 +58,7 @@ pub use block::{
 };
 #[doc(hidden)]
 pub use clock::{Relaxation, TrialForces};
+pub(crate) use column::is_anywhere;
 #[doc(hidden)]
 pub use column::{ColumnAccess, Role, all_columns, column_is, columns_in, place_in_buffer};
 #[doc(hidden)]

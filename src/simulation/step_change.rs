@@ -217,6 +217,10 @@ pub(super) fn add_memories_before(world: &mut World) {
 
 /// Keeps memories that are about to be carried on, where somebody looks at them afterwards.
 pub(super) fn keep_memories(world: &mut World) {
+    // a query asks for memory
+    if !is_anywhere::<MemoryBefore>(world) {
+        return;
+    }
     for (memory, mut before) in world.query::<(&ViscousMemory, &mut MemoryBefore)>().iter_mut(world) {
         before.0.bytes_mut().copy_from_slice(memory.0.bytes());
     }

@@ -49,7 +49,7 @@ impl Kept {
         if self.columns.is_empty() {
             let tried: fn(&ColumnAccess) -> bool = if self.of_rest { is_tried_at_rest } else { is_tried };
             // where elements may go, forces are taken once more
-            let loses = world.query::<&Alive>().iter(world).next().is_some();
+            let loses = is_anywhere::<Alive>(world);
             self.columns = find(world, |column| tried(column) || loses && is_carried_on(column));
         }
         for (column, entity, bytes) in &mut self.columns {

@@ -18,6 +18,10 @@ fn is_about(name: &str, subjects: &[Subject]) -> bool {
 
 /// How many elements are there, of blocks that may lose some, as the host knows.
 pub(in super::super) fn left(world: &mut World) -> usize {
+    // a query asks for memory
+    if !is_anywhere::<Alive>(world) {
+        return 0;
+    }
     let mut all = world.query::<&Alive>();
     all.iter(world).flat_map(|alive| &alive.0).filter(|&&alive| alive != 0).count()
 }
