@@ -27,5 +27,5 @@ pub use lists::{Finder, Lists};
 pub use neighbourhoods::Neighbourhoods;
 pub use parts::Parts;
 pub use shortlist::{Shortlist, Stays};
-pub use surfaces::{Near, Placed, Point, Surfaces};
+pub use surfaces::{DEEPEST, Near, Placed, Point, Surfaces, triangles_of};
 pub use ties::{Tie, TieSet};

@@ -4,6 +4,21 @@ use glam::DVec3;
 use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, PI};
 
+/// How deep behind a face is still its inside at most, in edges of its own body; of thin elements half of what is
+/// behind it.
+pub const DEEPEST: f64 = 0.5;
+
+/// Triangles of a facet of the author's nodes; a quadrilateral is cut from the lowest of its corners, so that the same
+/// is cut alike from both sides, and however the scene is turned.
+pub fn triangles_of([a, b, c, d]: [u32; 4]) -> impl Iterator<Item = [u32; 3]> {
+    let (first, second) = match c == d {
+        true => ([a, b, c], None),
+        false if a.min(c) < b.min(d) => ([a, b, c], Some([a, c, d])),
+        false => ([a, b, d], Some([b, c, d])),
+    };
+    std::iter::once(first).chain(second)
+}
+
 /// No triangle.
 pub(super) const NONE: u32 = u32::MAX;
 

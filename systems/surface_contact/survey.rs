@@ -6,7 +6,7 @@ use super::look::Motion;
 use super::{MeetingColumns, Surface, SurfaceContacts};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
-use crate::contact::{Finder, Lists, Point, Surfaces, Tree, face_points};
+use crate::contact::{DEEPEST, Finder, Lists, Point, Surfaces, Tree, face_points, triangles_of};
 use crate::mesh::SurfaceFace;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -14,10 +14,6 @@ use std::ops::{Deref, DerefMut, Range};
 
 /// Points and faces that are nearer than this at rest, in reaches, are never in each other's way.
 pub(super) const NEAR_AT_REST: f64 = 1.5;
-
-/// How deep behind a face is still its inside at most, in edges of its own body; of thin elements half of what is
-/// behind it.
-const DEEPEST: f64 = 0.5;
 
 /// Numbers of a point that are of its last step: what it has slid and lost since the start stays.
 const OF_A_STEP: usize = 6;
@@ -158,7 +154,7 @@ fn survey(
         let firsts = FacePlaces::firsts(columns.face_places, counted);
         for ((face, facet), first_point) in facets_of().zip(firsts) {
             let first = triangles.len();
-            for corners in split(facet).map(|corners| corners.map(row)) {
+            for corners in triangles_of(facet).map(|corners| corners.map(row)) {
                 depths.push(
                     0.5 * extent(corners, authoring.cells.nodes(face.element as usize), row, &columns.nodes.rest.0),
                 );
@@ -227,17 +223,6 @@ fn pieces(authoring: &Authoring, rows: &[u32]) -> Vec<u32> {
     let mut of_rows = vec![0; of_nodes.len()];
     authoring.node_rows.iter().zip(of_nodes).for_each(|(&row, piece)| of_rows[row as usize] = piece);
     rows.iter().map(|&row| of_rows[row as usize]).collect()
-}
-
-/// Triangles of a facet of the author's nodes; a quadrilateral is cut from the lowest of its corners, so that the same
-/// is cut alike from both sides, and however the scene is turned.
-fn split([a, b, c, d]: [u32; 4]) -> impl Iterator<Item = [u32; 3]> {
-    let (first, second) = match c == d {
-        true => ([a, b, c], None),
-        false if a.min(c) < b.min(d) => ([a, b, c], Some([a, c, d])),
-        false => ([a, b, d], Some([b, c, d])),
-    };
-    std::iter::once(first).chain(second)
 }
 
 /// How far an element reaches behind a face of its (m).

@@ -5,14 +5,12 @@ use super::{FacetNow, surface_now};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
 use crate::contact::{
-    Faced, Finder, Kept, Listed, Lists, Placed, Point, Shortlist, Stays, Surfaces, Tree, face_points,
+    DEEPEST, Faced, Finder, Kept, Listed, Lists, Placed, Point, Shortlist, Stays, Surfaces, Tree, face_points,
+    triangles_of,
 };
 use crate::error::Error;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
-
-/// How deep behind a face is still its inside at most, in edges of its own body, as contact has it.
-const DEEPEST: f64 = 0.5;
 
 /// Triangles of bodies, with nodes numbered through all of them: those of a body in the author's order.
 #[derive(Default)]
@@ -28,7 +26,7 @@ impl Bodies {
     /// the facet, and the number of its first triangle.
     fn add(&mut self, (owner, first, deepest): (u32, u32, f64), facet: &FacetNow) -> ([u32; 4], u32) {
         let number = self.triangles.len() as u32;
-        for corners in split(facet.facet) {
+        for corners in triangles_of(facet.facet) {
             self.triangles.push(corners.map(|node| first + node));
             self.owners.push(owner);
             self.depths.push(facet.depth.min(deepest));
@@ -156,16 +154,6 @@ fn places_now(world: &World, body: Entity, reference: DVec3) -> Vec<DVec3> {
     };
     let place = |&row: &u32| rest.0[row as usize] - reference + u.vector(row as usize);
     authoring.node_rows.iter().map(place).collect()
-}
-
-/// The triangles of a facet: a quadrilateral is cut from the lowest of its corners, as contact cuts it.
-fn split([a, b, c, d]: [u32; 4]) -> impl Iterator<Item = [u32; 3]> {
-    let (first, second) = match c == d {
-        true => ([a, b, c], None),
-        false if a.min(c) < b.min(d) => ([a, b, c], Some([a, c, d])),
-        false => ([a, b, d], Some([b, c, d])),
-    };
-    std::iter::once(first).chain(second)
 }
 
 /// The least and the largest coordinates of nothing.
