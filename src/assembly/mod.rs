@@ -44,6 +44,7 @@ pub use patches::insert_forces;
 pub use relaxation::load_steps;
 pub use renew::renew_materials;
 pub use select::Selection;
+pub(crate) use time_step::square_wave_frequencies;
 pub use time_step::{
     CriticalElement, SquaresAtRest, StableStep, alike_in_any_precision, author_of, damped, damping_times, element_step,
     square_frequencies, stable_step, undamped_square_frequencies,

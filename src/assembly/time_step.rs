@@ -4,7 +4,7 @@ use super::body_columns::{copies_of_elements, stiffnesses};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
 use crate::elements::with_element_of;
-use crate::elements::{Element, MOST_ROWS};
+use crate::elements::{Element, MOST_ROWS, Stiffness};
 use crate::evaluation::rest_volume;
 use crate::math::lane_place;
 use bevy_ecs::prelude::*;
@@ -59,7 +59,7 @@ pub(super) fn square_frequency<'a>(
     entity: Entity,
     block: &'a Block,
 ) -> Option<impl Fn(usize) -> f64 + Sync + 'a> {
-    square_frequency_of(world, entity, block, |number| number)
+    square_frequency_of(world, entity, block, |number| number, |moduli| moduli)
 }
 
 /// β of a block's damping (s), of each copy where it differs, else one; 0 where there is none, and in a static
@@ -96,25 +96,26 @@ pub fn damped(square: f64, beta: f64) -> f64 {
     square * (half + (1.0 + half * half).sqrt()).powi(2)
 }
 
-/// The same, of rest shapes whose numbers are made so.
+/// The same, of rest shapes whose numbers are made so, and of moduli that are.
 fn square_frequency_of<'a>(
     world: &'a World,
     entity: Entity,
     block: &'a Block,
     made: impl Fn(f64) -> f64 + Sync + 'a,
+    moduli: fn(Stiffness) -> Stiffness,
 ) -> Option<impl Fn(usize) -> f64 + Sync + 'a> {
     let stiffnesses = stiffnesses(world, entity);
     let copies = copies_of_elements(world, entity);
     let shape = world.get::<RestShape>(entity)?;
     let first = *stiffnesses.first()?;
     Some(move |row: usize| {
-        let stiffness = copies.map_or(&first, |copies| &stiffnesses[copies[row] as usize]);
+        let stiffness = moduli(copies.map_or(first, |copies| stiffnesses[copies[row] as usize]));
         let mut rest = [0.0; MOST_ROWS];
         with_element_of!(block, E => {
             for k in 0..E::ROWS {
                 rest[k] = made(shape.get(lane_place(row, E::ROWS, k)));
             }
-            E::frequency_bound(&rest, stiffness)
+            E::frequency_bound(&rest, &stiffness)
         })
     })
 }
@@ -149,6 +150,21 @@ pub fn undamped_square_frequencies(world: &World, entity: Entity) -> Vec<(f64, f
     world.resource::<Cpu>().confine(|| (0..block.count).into_par_iter().map(of_row).collect())
 }
 
+/// ω² (1/s²) of a plane wave along the shortest way through each element of a block, as [`square_frequencies`] has its
+/// bound: (n/ρ)(λ + 2μ') λ_max(G), which is the bound of a law whose λ is in 2μ'. 0 of removed ones.
+pub(crate) fn square_wave_frequencies(world: &World, entity: Entity) -> Vec<f64> {
+    let Some(block) = world.get::<Block>(entity) else { return Vec::new() };
+    let along = |moduli: Stiffness| Stiffness { lambda: 0.0, shear: moduli.shear + 0.5 * moduli.lambda, ..moduli };
+    let wave = square_frequency_of(world, entity, block, |number| number, along);
+    let (Some(wave), Some(shape)) = (wave, world.get::<RestShape>(entity)) else { return Vec::new() };
+    let beta = damping_time_of(world, entity);
+    let of_row = |row: usize| match rest_volume(block, row, shape) > 0.0 {
+        true => damped(wave(row), beta(row)),
+        false => 0.0,
+    };
+    world.resource::<Cpu>().confine(|| (0..block.count).into_par_iter().map(of_row).collect())
+}
+
 /// The stable step of an element of a block, by its row: 2/ω of its bound (s), with its damping; none of a removed one.
 pub fn element_step(world: &World, entity: Entity, row: usize) -> Option<f64> {
     let block = world.get::<Block>(entity)?;
@@ -169,7 +185,7 @@ fn short(number: f64) -> f64 {
 /// precision the world is in, computed in f64 from shapes that f32 has, too.
 pub fn alike_in_any_precision(world: &World, entity: Entity) -> Vec<(f64, f64)> {
     let Some(block) = world.get::<Block>(entity) else { return Vec::new() };
-    let frequency = square_frequency_of(world, entity, block, short);
+    let frequency = square_frequency_of(world, entity, block, short, |moduli| moduli);
     let (Some(frequency), Some(shape)) = (frequency, world.get::<RestShape>(entity)) else { return Vec::new() };
     let (inertia, beta) = (ElementInertia::of(world, entity), damping_time_of(world, entity));
     let of_row = |row: usize| {

@@ -129,7 +129,7 @@ pub trait Element: Copy + Send + Sync + 'static {
     /// ω² ≤ (n/ρ)(λ tr G + 2μ' λ_max(G)), G = Σ g gᵀ, n as in [`NODES_OF_LEAST_MASS`](Element::NODES_OF_LEAST_MASS): no
     /// node has less than m/n; λ, μ' and ρ as [`Stiffness`] has them; plus what the hourglass control adds. Where nodes
     /// have different shares s of the mass, g/√s stands for √n g. Rigorous at rest; stretch raises the true value by
-    /// about 1/σ_min(F)².
+    /// about 1/σ_min(F)², and by J² times that where the volume grows.
     fn frequency_bound(shape: &[f64; MOST_ROWS], stiffness: &Stiffness) -> f64;
 }
 

@@ -1,17 +1,14 @@
 //! How much quicker elements can have become: a cheap bound, from how far they are deformed now.
 
+mod bounds;
 mod strain;
 
 use super::damped_step::{is_damped, ratio_with_damping};
-use super::mass_scaling::scaled_mass;
 use super::stiffness_ratio::StiffnessRatio;
-use crate::assembly::{SquaresAtRest, square_frequencies};
+use crate::assembly::SquaresAtRest;
 use crate::backend::cpu::{BlockLaw, Cpu, Strain};
 use crate::components::*;
-use crate::elements::node_count;
-use crate::evaluation::rest_volume;
 use crate::math::LANES;
-use crate::math::lane_place;
 use crate::observation::shortest_edge;
 use bevy_ecs::prelude::*;
 use std::ops::Range;
@@ -33,19 +30,38 @@ pub(super) struct StiffnessTracker {
     stiffness: StiffnessRatio,
     /// Of each element the bound of ω² at rest (1/s²); 0 where all its nodes are held: it does not move by itself.
     pub squares: Vec<f64>,
+    /// The same of a plane wave along its shortest way (1/s²).
+    waves: Vec<f64>,
     /// The shortest distance between two nodes of an element at rest (m).
     pub shortest_edge: f64,
     /// The ratio of ω² of all, by each element, when that was found last.
     known_ratio: Vec<f32>,
-    /// Of the elements of each part that are there: the largest bound at rest (1/s²), and the least ratio of ω² of all
-    /// when that was found.
-    parts: Vec<(f64, f64)>,
+    /// What the elements of each part come to at rest.
+    parts: Vec<Part>,
     /// How many elements were there when that was summed up.
     counted: usize,
     /// Whether anything is damped in proportion to its stiffness.
     pub is_damped: bool,
     /// What the last check showed, task by task.
     deformed: Vec<Deformed>,
+}
+
+/// What the elements of a part come to at rest: those that are there, and can move.
+#[derive(Clone, Copy)]
+struct Part {
+    /// The largest bound of ω² (1/s²).
+    at_rest: f64,
+    /// The largest ω² of a plane wave (1/s²).
+    wave: f64,
+    /// The least ratio of ω² of all when that was found.
+    least_known: f64,
+}
+
+impl Part {
+    /// The bound of ω² of elements whose own has grown `own` times at most, that of waves `of_all` times (1/s²).
+    fn of_elements(&self, own: f64, of_all: f64) -> f64 {
+        (self.at_rest * own).max(self.wave * of_all).min(f64::MAX)
+    }
 }
 
 /// How far the elements of a task are deformed, and its parts as if one element were the largest in everything.
@@ -81,7 +97,8 @@ fn part_groups(part: usize) -> Range<usize> {
 pub(super) struct StabilitySample {
     /// ω² of all at most (1/s²): by the elements alone, or by what was known of all.
     pub square: f64,
-    /// The largest bound of ω² of an element at rest, times its ratio (1/s²).
+    /// The largest bound of ω² of an element at rest, times its ratio; or of a wave along its shortest way, times that
+    /// of waves (1/s²).
     pub of_elements: f64,
     /// The largest bound of ω² of an element at rest (1/s²).
     pub at_rest: f64,
@@ -125,16 +142,6 @@ fn fastest(one: f64, other: f64) -> f64 {
     if other.is_nan() { f64::INFINITY } else { one.max(other) }
 }
 
-/// Whether a node of an element can move by itself.
-fn moves(world: &World, entity: Entity, row: usize) -> bool {
-    let (Some(block), Some(connectivity)) = (world.get::<Block>(entity), world.get::<Connectivity>(entity)) else {
-        return true;
-    };
-    let (corners, held) = (node_count(block.kind), world.get::<ConstrainedAxes>(block.body));
-    let node = |corner: usize| connectivity[lane_place(row, corners, corner)] as usize;
-    held.is_none_or(|held| (0..corners).any(|corner| held[node(corner)] & 7 != 7))
-}
-
 impl StiffnessTracker {
     /// All elements of a world.
     pub fn all(world: &mut World) -> Vec<Self> {
@@ -146,12 +153,13 @@ impl StiffnessTracker {
             let block = world.get::<Block>(entity)?;
             let rest = world.get::<RestPosition>(block.body)?;
             let shortest_edge = shortest_edge(block, world.get::<Connectivity>(entity)?, rest);
-            let (squares, parts) = (Vec::new(), Vec::new());
+            let (squares, waves, parts) = (Vec::new(), Vec::new(), Vec::new());
             let known_ratio = vec![1.0; block.count];
             let mut tracked = Self {
                 entity,
                 stiffness,
                 squares,
+                waves,
                 shortest_edge,
                 known_ratio,
                 parts,
@@ -166,36 +174,6 @@ impl StiffnessTracker {
         // from here on bodies may change
         world.remove_resource::<SquaresAtRest>();
         all
-    }
-
-    /// Takes the bounds at rest anew, with the mass that was added by now.
-    pub fn update_bounds(&mut self, world: &World) {
-        let squares = square_frequencies(world, self.entity).into_iter().enumerate();
-        let mass_factor = |row: usize| scaled_mass(world, self.entity, row).map_or(1.0, |(_, mass_factor)| mass_factor);
-        let of_row = |(row, (square, _)): (usize, (f64, f64))| match moves(world, self.entity, row) {
-            true => square / mass_factor(row),
-            false => 0.0,
-        };
-        self.squares = squares.map(of_row).collect();
-        self.sum_up(world);
-    }
-
-    /// What parts come to, of the elements that are there.
-    fn sum_up(&mut self, world: &World) {
-        let (Some(block), Some(shape)) = (world.get::<Block>(self.entity), world.get::<RestShape>(self.entity)) else {
-            return;
-        };
-        let is_there = |row: &usize| rest_volume(block, *row, shape) > 0.0;
-        let count = self.squares.len();
-        let of_part = |part: usize| {
-            let rows = part * ROWS_A_PART..count.min((part + 1) * ROWS_A_PART);
-            let rows = rows.filter(is_there).filter(|&row| self.squares[row] > 0.0);
-            rows.fold((0.0_f64, f64::INFINITY), |(most, least), row| {
-                (most.max(self.squares[row]), least.min(f64::from(self.known_ratio[row])))
-            })
-        };
-        self.parts = (0..count.div_ceil(ROWS_A_PART)).map(of_part).collect();
-        self.counted = (0..count).filter(is_there).count();
     }
 
     /// The ratio of ω² of each element when the frequency of all was found last.
@@ -239,15 +217,15 @@ impl StiffnessTracker {
         let widest = self.deformed.iter().flat_map(|task| &task.parts);
         let parts = widest.zip(&self.parts).enumerate().filter(|(_, ((_, alive), _))| *alive > 0);
         let (places, parts): (Vec<usize>, Vec<StabilitySample>) = parts
-            .map(|(part, (&(widest, alive), &(at_rest, least_known)))| {
+            .map(|(part, (&(widest, alive), known))| {
                 let [own, of_all] = self.ratio_of(widest.size, widest.squeeze, widest.more);
-                let (of_elements, ratio) = ((at_rest * own).min(f64::MAX), (of_all / least_known).max(1.0));
+                let (of_elements, ratio) = (known.of_elements(own, of_all), (of_all / known.least_known).max(1.0));
                 (
                     part,
                     StabilitySample {
                         square: f64::INFINITY,
                         of_elements,
-                        at_rest,
+                        at_rest: known.at_rest,
                         ratio,
                         speed: widest.speed,
                         mean_speed: widest.mean_speed,
@@ -293,11 +271,11 @@ impl StiffnessTracker {
     fn one_by_one(&self, (part, at_most): (usize, StabilitySample), known: &StabilitySample) -> StabilitySample {
         let (mut of_elements, mut ratio) = (known.of_elements, known.ratio);
         let Some(of) = self.deformed.get(part / PARTS_A_TASK) else { return at_most };
-        let (at_rest, least_known) = self.parts[part];
+        let Part { at_rest, wave, least_known } = self.parts[part];
         // no element that is deformed less comes to more than what is known
         let until = |of_elements: f64, ratio: f64| match self.is_damped || !self.stiffness.families.is_empty() {
             true => [0.0; 2],
-            false => self.stiffness.until(of_elements / at_rest, ratio * least_known),
+            false => self.stiffness.until(of_elements / at_rest, (ratio * least_known).min(of_elements / wave)),
         };
         let [mut size, mut squeeze] = until(of_elements, ratio);
         let first = part / PARTS_A_TASK * ROWS_A_TASK;
@@ -306,7 +284,7 @@ impl StiffnessTracker {
             let may_be_more = of.size[place] > size || of.squeeze[place] > squeeze;
             if of.size[place] > 0.0 && self.squares[row] > 0.0 && may_be_more {
                 let [own, of_all] = self.ratio_of(of.size[place], of.squeeze[place], of.more[place]);
-                let (own, of_all) = (self.squares[row] * own, of_all / f64::from(self.known_ratio[row]));
+                let (own, of_all) = (self.square_of(row, own, of_all), of_all / f64::from(self.known_ratio[row]));
                 if own > of_elements || of_all > ratio {
                     (of_elements, ratio) = (of_elements.max(own), ratio.max(of_all));
                     [size, squeeze] = until(of_elements, ratio);
@@ -330,9 +308,14 @@ impl StiffnessTracker {
         self.reach_all(world);
         let found = self.ratios(world, Vec::new(), |found, row, [own, of_all]| {
             let ratio = (of_all / f64::from(self.known_ratio[row])).max(1.0);
-            found.push((row, self.squares[row] * own, ratio));
+            found.push((row, self.square_of(row, own, of_all), ratio));
         });
         found.into_iter().flatten().collect()
+    }
+
+    /// The bound of an element's ω² when its own has grown `own` times, that of waves `of_all` times (1/s²).
+    fn square_of(&self, row: usize, own: f64, of_all: f64) -> f64 {
+        (self.squares[row] * own).max(self.waves[row] * of_all)
     }
 
     /// Stiffness ratio of an element's own ω², and of that of all.

@@ -1,24 +1,32 @@
 //! How much stiffer a law can have become, by how far it is deformed: what makes frequencies rise during a run.
 //!
 //! In total Lagrangian form an element's gradients and volume stay those at rest, so all that can raise its frequencies
-//! is the tangent ∂P/∂F of its law. For a deformation of the size s = max(tr C, tr C⁻¹)/3 the table holds the largest
-//! eigenvalue of ∂P/∂F that was met at smaller or equal sizes among [`samples`], over that at rest: of the whole, of
-//! the volumetric part, and of the isochoric part along changes that keep the volume (across F⁻ᵀ), whichever has grown
-//! most. Elements that average the pressure feel these parts to different shares.
+//! is the tangent ∂P/∂F of its law. For a deformation of the size s = max(tr C, tr C⁻¹, tr cof C)/3 the table holds the
+//! largest eigenvalue of ∂P/∂F that was met at smaller or equal sizes among [`samples`], over that at rest: of the
+//! whole, of the volumetric part, and of the isochoric part along changes that keep the volume (across F⁻ᵀ), whichever
+//! has grown most. Elements that average the pressure feel these parts to different shares.
 //!
-//! That bounds an element's own frequency. The highest of all bodies may rise more, because what was not the stiffest
-//! change of F at rest may become it: waves through tissue squeezed to λ have its height to cross, and ω² grows with
-//! λ⁻². So for what was known of all there is a second table: the largest (a⊗b) : ∂P/∂F : (a⊗b) along the axes, for
-//! plane waves, by the largest eigenvalue of C⁻¹.
+//! That bounds an element's own frequency, where it is as long one way as another. The highest of all bodies, and that
+//! of an element along its shortest way, may rise more, because what was not the stiffest change of F at rest may
+//! become it: a plane wave, which changes F by a⊗b. Along a⊗b J is linear, so that of U(J) the wave feels U″ (a · cof F
+//! b)², at most U″ times the largest eigenvalue of cof C = J² C⁻¹: λ⁻² across what is squeezed to λ at constant volume,
+//! and more by J² where the volume has grown, as it does in what is drawn out. (Drawn out by 1.9, held across and free
+//! in height, neo-Hookean tissue of ν = .3 has λ = .71 and J = 1.34: ω² is 3.50 times that at rest, λ⁻² is 2.0.) What
+//! isochoric energies add grows faster than that, of a neo-Hookean one it is μ J^(−2/3) (5/9 tr C λ⁻² − 1/3). So there
+//! is a second table: the largest (a⊗b) : ∂P/∂F : (a⊗b) along the axes, over that at rest, by the largest eigenvalue of
+//! C⁻¹, or of cof C where that is larger, from stretches at constant volume and such as make it grow. What is pulled
+//! without being squeezed as much counts by its size: St. Venant and Kirchhoff's law is quicker along a stretch.
 //!
-//! Exponential fibres stiffen by so much more that what
-//! they add is computed along their own directions.
+//! Exponential fibres stiffen by so much more that what they add is computed along their own directions.
+
+mod table;
 
 use crate::backend::cpu::{BlockLaw, LawParameters, sizes, with_identity};
 use crate::components::FamilyDirection;
 use crate::materials::{Elastic, ExponentialFibre};
 use crate::math::Mat3;
 use std::collections::BTreeSet;
+use table::Table;
 
 /// Stretches that laws are tried at: each so many times the one before.
 const STRETCH_RATIO: f64 = 1.106;
@@ -45,6 +53,8 @@ pub(super) struct StiffnessRatio {
     own: Table,
     /// By squeeze, of plane waves.
     waves: Table,
+    /// By size, of plane waves in what is pulled.
+    pulled: Table,
     /// Exponential fibres, and where they have their directions from.
     pub families: Vec<(ExponentialFibre<f64>, FamilyDirection<f64>)>,
     /// Families whose directions differ from element to element, quadratic ones included.
@@ -64,13 +74,14 @@ impl StiffnessRatio {
             (law, rest)
         };
         let laws = extremes(law).into_iter().map(at_rest).collect();
-        let mut new = Self { laws, ends, tried: 0, own: Table::new(), waves: Table::new(), families, varying };
+        let [own, waves, pulled] = [(); 3].map(|()| Table::new());
+        let mut new = Self { laws, ends, tried: 0, own, waves, pulled, families, varying };
         // what is pressed flat or through itself is no limit there
         for stretch in FLAT.into_iter().filter(|_| !ends) {
-            for stretches in [[stretch, 1.0, 1.0], [1.0, stretch, 1.0]] {
+            for (kind, stretches) in [[stretch, 1.0, 1.0], [1.0, stretch, 1.0]].into_iter().enumerate() {
                 let [size, own, waves] = new.tried_at(stretches);
-                new.own.points.push((size, own));
-                new.waves.points.push((size, waves));
+                new.own.add(SAMPLES + kind, (size, own));
+                new.waves.add(SAMPLES + kind, (size, waves));
             }
         }
         new.own.sort();
@@ -96,14 +107,18 @@ impl StiffnessRatio {
                 self.tried = STRETCHES;
                 break;
             }
-            found.iter().for_each(|&[size, own, _]| self.own.points.push((size, own)));
-            // those that are pulled are squeezed less, and stiffer for another reason
-            let waves = found[PULLED..].iter().fold(1.0, |most: f64, [.., waves]| most.max(*waves));
-            self.waves.points.push((s * s, waves));
+            for (kind, &[size, own, waves]) in found.iter().enumerate() {
+                self.own.add(kind, (size, own));
+                // those that are pulled are squeezed less, and stiffer for another reason
+                if kind < PULLED {
+                    self.pulled.add(kind, (size, waves));
+                } else {
+                    self.waves.add(kind, (s * s, waves));
+                }
+            }
         }
         if self.tried > before {
-            self.own.sort();
-            self.waves.sort();
+            [&mut self.own, &mut self.waves, &mut self.pulled].into_iter().for_each(Table::sort);
         }
     }
 
@@ -132,13 +147,13 @@ impl StiffnessRatio {
 
     /// The same of ω² of all bodies, for a size and a squeeze.
     pub fn of_all(&self, size: f64, squeeze: f64) -> f64 {
-        self.own.at(size).max(self.waves.at(squeeze))
+        self.own.at(size).max(self.pulled.at(size)).max(self.waves.at(squeeze))
     }
 
     /// Up to which size and which squeeze no element's own ω² grows beyond `own`, and that of all not beyond `of_all`,
     /// without exponential fibres.
     pub fn until(&self, own: f64, of_all: f64) -> [f64; 2] {
-        [self.own.until(own.min(of_all)), self.waves.until(of_all)]
+        [self.own.until(own.min(of_all)).min(self.pulled.until(of_all)), self.waves.until(of_all)]
     }
 
     /// What a family of exponential fibres adds to the ratio, for a C and its direction: k₁ e^x (4 (1 + 2x) M + 2Ē)
@@ -202,73 +217,17 @@ fn stiffest_families(law: &BlockLaw<f64>) -> Vec<(ExponentialFibre<f64>, FamilyD
     families
 }
 
-/// Stiffness ratio by how far something is deformed, as straight pieces that never fall.
-#[derive(Clone, Debug)]
-struct Table {
-    /// Deformation and ratio, both ascending.
-    points: Vec<(f64, f64)>,
-    /// The first of them in each [`bucket`] of deformations, or else behind it.
-    first: Vec<usize>,
-}
-
-impl Table {
-    fn new() -> Self {
-        Self { points: vec![(1.0, 1.0)], first: vec![0, 1] }
-    }
-
-    fn sort(&mut self) {
-        self.points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut largest = 1.0_f64;
-        for (_, ratio) in &mut self.points {
-            largest = largest.max(*ratio);
-            *ratio = largest;
-        }
-        let beyond = self.points.last().map_or(0, |(size, _)| bucket(*size) + 1);
-        self.first = (0..=beyond).map(|b| self.points.partition_point(|(size, _)| bucket(*size) < b)).collect();
-    }
-
-    fn at(&self, size: f64) -> f64 {
-        let mut after = self.first.get(bucket(size)).copied().unwrap_or(self.points.len());
-        while self.points.get(after).is_some_and(|(s, _)| *s < size) {
-            after += 1;
-        }
-        match (after.checked_sub(1).map(|i| self.points[i]), self.points.get(after)) {
-            (Some((s0, g0)), Some(&(s1, g1))) => g0 + (g1 - g0) * (size - s0) / (s1 - s0),
-            (None, _) => 1.0,
-            (Some((s, g)), None) => (g * (size / s) * (size / s)).min(LARGEST_RATIO),
-        }
-    }
-
-    /// Up to which deformation the ratio is at most that: 0 where it is more from the beginning.
-    fn until(&self, ratio: f64) -> f64 {
-        let after = self.points.partition_point(|(_, g)| *g <= ratio);
-        match (after.checked_sub(1).map(|i| self.points[i]), self.points.get(after)) {
-            (Some((s0, g0)), Some(&(s1, g1))) => {
-                // a billionth less, so that rounding leads to no more; pieces may be as short as that
-                let size = s0 + (s1 - s0) * (ratio - g0) / (g1 - g0) * (1.0 - 1e-9);
-                if self.at(size) <= ratio { size } else { s0 }
-            }
-            (Some((s, _)), None) => s,
-            (None, _) => 0.0,
-        }
-    }
-}
-
-/// Which sixty-fourth of an octave from 1 on a size is in: the exponent and six bits of the mantissa.
-fn bucket(size: f64) -> usize {
-    ((size.to_bits() >> 46) as usize).saturating_sub((1.0_f64.to_bits() >> 46) as usize)
-}
-
-/// How many samples there are of a stretch; the first of them are pulled, the others squeezed, the last in one
-/// direction alone.
-const SAMPLES: usize = 9;
+/// How many samples there are of a stretch; the first of them are pulled, the others squeezed, or have a cof C as if
+/// they were, the last in one direction alone.
+const SAMPLES: usize = 14;
 const PULLED: usize = 2;
 const ALONE: usize = 2;
 /// Stretches in one direction alone at which laws that do not end at J = 0 are tried.
 const FLAT: [f64; 9] = [0.8, 0.6, 0.4, 0.2, 0.1, 0.0, -0.2, -0.5, -1.0];
 
-/// Principal stretches that are tried: of constant volume pulled, squeezed and sheared, along the fibres and across,
-/// and of one direction alone.
+/// Principal stretches that are tried: of constant volume pulled, squeezed and sheared, along the fibres and across, of
+/// a volume that has grown, and of one direction alone. Of all but those that are pulled the largest eigenvalue of C⁻¹,
+/// or of cof C where that is larger, is s².
 fn samples(s: f64) -> [[f64; 3]; SAMPLES] {
     let (r, root) = (1.0 / s, s.sqrt());
     let thin = 1.0 / root;
@@ -280,6 +239,11 @@ fn samples(s: f64) -> [[f64; 3]; SAMPLES] {
         [s, r, 1.0],
         [r, s, 1.0],
         [1.0, s, r],
+        [s, 1.0, 1.0],
+        [1.0, s, 1.0],
+        [root, root, 1.0],
+        [1.0, root, root],
+        [root, root, root],
         [r, 1.0, 1.0],
         [1.0, r, 1.0],
     ]

@@ -295,3 +295,67 @@ fn a_thread_that_snaps_back_gains_no_energy() {
         }
     }
 }
+
+/// A block that is held across and smoothly drawn out by .9 of its length, free in height: its volume grows, and waves
+/// across what is thinnest quicken more than by the inverse of that stretch (3.5 times ω² at ν = .3).
+fn drawn_out(elements: &str, law: &str, duration: f64) -> String {
+    format!(
+        r#"(duration: {duration}, bodies: {{"b": (mesh: Box(size: (0.005, 0.004, 0.0018), cells: (6, 3, 3),
+            elements: {elements}), material: "m")}},
+        materials: {{"m": (density: 1000, {law}, damping: 100)}},
+        constraints: [Fixed(on: Or([Set("y0"), Set("y1")]), axes: [Y]), Fixed(on: Set("x0"), axes: [X]),
+            Fixed(on: Set("z0"), axes: [Z]),
+            Prescribed(on: Set("x1"), axes: [X], displacement: (0.0045, 0, 0), curve: Smooth(end: {duration}))])"#
+    )
+}
+
+/// Laws of 100 kPa as scenes have them.
+fn law_of(name: &str, poisson: f64) -> String {
+    let (shear, bulk) = (1e5 / (2.0 * (1.0 + poisson)), 1e5 / (3.0 * (1.0 - 2.0 * poisson)));
+    match name {
+        "mooney_rivlin" => format!("mooney_rivlin: (c10: {0:e}, c01: {0:e}, bulk: {bulk:e})", shear / 4.0),
+        "ogden" => {
+            let mu = shear / 2.0;
+            format!("ogden: (terms: [(mu: {mu:e}, alpha: 2), (mu: -{mu:e}, alpha: -2)], bulk: {bulk:e})")
+        }
+        _ => format!("{name}: Young(young: 1e5, poisson: {poisson})"),
+    }
+}
+
+/// Steps beyond the stable one show as nodes that are faster than what is prescribed, then as energy from nothing.
+fn stays_stable(elements: &str, (law, poisson): (&str, f64), duration: f64) {
+    for run in configurations().iter().filter(|run| matches!(run.options.backend, BackendChoice::Cpu)) {
+        let what = format!("{}, {elements}, {law}, ν = {poisson}, {duration} s", run.name);
+        let mut simulation = run.start(&drawn_out(elements, &law_of(law, poisson), duration));
+        simulation.finish().unwrap_or_else(|error| panic!("{what}: {error}"));
+        let guards = simulation.guards();
+        let (fastest, imbalance) = (guards.fastest_node.as_ref().unwrap().value, guards.imbalance.abs());
+        // the smooth curve is at most 15/8 times as fast as an even one
+        let asked = 0.0045 * 15.0 / 8.0 / duration;
+        println!("{what}: {fastest:.4} m/s of {asked:.4} m/s, {imbalance:e}, {:?}", simulation.step_history());
+        assert!(imbalance < 1e-3, "{what}: balance {imbalance:e}");
+        assert!((0.8..1.2).contains(&(fastest / asked)), "{what}: {fastest} m/s where {asked} m/s are asked for");
+    }
+}
+
+#[test]
+fn the_step_follows_tissue_that_is_drawn_out() {
+    stays_stable("Hex8", ("neo_hookean", 0.3), 0.15);
+    stays_stable("Hex8", ("ogden", 0.4), 0.15);
+    stays_stable("Hex8MeanDilatation", ("stable_neo_hookean", 0.45), 0.15);
+    stays_stable("Hex8MeanDilatation", ("mooney_rivlin", 0.4), 0.15);
+}
+
+#[test]
+#[ignore = "long"]
+fn the_step_follows_tissue_that_is_drawn_out_whatever_the_law_and_the_pace() {
+    for duration in [0.15, 0.5] {
+        for elements in ["Hex8", "Hex8MeanDilatation"] {
+            for law in ["neo_hookean", "stable_neo_hookean", "mooney_rivlin", "ogden"] {
+                for poisson in [0.2, 0.3, 0.4, 0.45] {
+                    stays_stable(elements, (law, poisson), duration);
+                }
+            }
+        }
+    }
+}

@@ -20,19 +20,21 @@ pub struct StrainColumns<'a, T> {
     /// Rest shapes.
     pub rest_shape: &'a [T],
     /// Whether the law ends at J = 0, so that it pushes without bound where C is nearly singular: else what is said of
-    /// C⁻¹ is of cof C = J² C⁻¹, and is 1 + (1 − J)² at least.
+    /// C⁻¹ is of cof C = J² C⁻¹ whatever J, and is 1 + (1 − J)² at least.
     pub ends: bool,
 }
 
-/// An element's deformation; the largest of its integration points.
+/// An element's deformation; the largest of its integration points. C⁻¹ stands for max(1, J²) C⁻¹, that is for the
+/// larger one of C⁻¹ and cof C: waves through what is drawn out, which gains volume, are as quick as cof C says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Strain {
     /// Row of the element.
     pub row: usize,
     /// max(tr C, tr C⁻¹)/3: 1 at rest; infinite for what is flat, or no number.
     pub size: f64,
-    /// At least the largest eigenvalue of C⁻¹, the inverse square of the least stretch, and no more than that where one
-    /// axis is squeezed: tr C⁻¹/3 + √(2/3 D : D) with its deviator D; infinite for what is flat, or no number.
+    /// At least the largest eigenvalue of C⁻¹, at constant volume the inverse square of the least stretch, and no more
+    /// than that where one axis is squeezed: tr C⁻¹/3 + √(2/3 D : D) with its deviator D; infinite for what is flat, or
+    /// no number.
     pub squeeze: f64,
     /// √(ΔE : ΔE) times [`squeeze`](Self::squeeze), with the change ΔE of Green's strain in a step: at least the change
     /// of a length over that length; infinite for what is no number.
@@ -229,9 +231,9 @@ pub(crate) fn with_identity<R: Real>(gradient: &Mat3<R>) -> [[R; 3]; 3] {
     f
 }
 
-/// tr C/3, tr C⁻¹/3 and a bound of the largest eigenvalue of C⁻¹ (see [`Strain::squeeze`]): |F|², and cof F over J,
-/// which lose no digits where C is nearly singular. Where a law does not end at J = 0, of cof C in place of C⁻¹, and
-/// 1 + (1 − J)² at least.
+/// tr C/3, tr C⁻¹/3 and a bound of the largest eigenvalue of C⁻¹ (see [`Strain::squeeze`]), C⁻¹ times max(1, J²): |F|²,
+/// and cof F over min(1, J), which lose no digits where C is nearly singular. Where a law does not end at J = 0, of cof
+/// C in place of C⁻¹, and 1 + (1 − J)² at least.
 #[inline(always)]
 pub(crate) fn sizes<R: Real>(f: &[[R; 3]; 3], ends: bool) -> [R; 3] {
     let third = f[0][0].constant(1.0 / 3.0);
@@ -263,7 +265,10 @@ pub(crate) fn sizes<R: Real>(f: &[[R; 3]; 3], ends: bool) -> [R; 3] {
         square = (across + across).mul_add(across, square);
     }
     let one = f[0][0].constant(1.0);
-    let (per_square, least) = if ends { (one / (j * j), zero) } else { (one, (one - j).mul_add(one - j, one)) };
+    let (per_square, least) = match ends {
+        true => (one / (j * j).min(one), zero),
+        false => (one, (one - j).mul_add(one - j, one)),
+    };
     let deviator = (square * f[0][0].constant(2.0 / 3.0)).sqrt() * per_square;
     [first * third, (mean * per_square).max(least), (mean * per_square + deviator).max(least)]
 }

@@ -1,12 +1,14 @@
 use super::*;
 
 #[test]
-fn sizes_are_traces_of_c_and_of_its_inverse() {
-    // stretches 2, 3 and ¼, turned about z by 90°
+fn sizes_are_traces_of_c_and_of_its_inverse_or_where_the_volume_has_grown_its_cofactors() {
+    // stretches 2, 3 and ¼, turned about z by 90°: J = 1.5; then 2, ½ and ¼
     let f = [[0.0, -3.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 0.25]];
     let [first, inverse, _] = sizes(&f, true);
     assert!((first - (4.0 + 9.0 + 0.0625) / 3.0_f64).abs() < 1e-14);
-    assert!((inverse - (0.25 + 1.0 / 9.0 + 16.0) / 3.0_f64).abs() < 1e-14);
+    assert!((inverse - 1.5 * 1.5 * (0.25 + 1.0 / 9.0 + 16.0) / 3.0_f64).abs() < 1e-14);
+    let [_, smaller, _] = sizes(&[[0.0, -0.5, 0.0], f[1], f[2]], true);
+    assert!((smaller - (0.25 + 4.0 + 16.0) / 3.0_f64).abs() < 1e-14);
     assert_eq!(right_cauchy_green(&f), [4.0, 9.0, 0.0625, 0.0, 0.0, 0.0]);
 }
 
