@@ -15,6 +15,10 @@ pub struct BeginsInside;
 pub struct GuardMemory {
     /// Checks so far.
     pub checks: u64,
+    /// The step of the last of them: what looks at that state again, as who observes it and who goes on from it does,
+    /// is no other check.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) checked_at: Option<u64>,
     /// Energy that rounding may have made or lost so far (J).
     pub rounding: f64,
     /// What elements held at the start (J), where bodies start deformed.
@@ -27,6 +31,9 @@ pub struct GuardMemory {
     pub scale: f64,
     /// The largest imbalance so far, as a share of the scale then; positive where energy was made.
     pub imbalance: f64,
+    /// What the formula of implicit steps has taken so far (J); negative where it has made energy.
+    #[serde(default)]
+    pub(crate) scheme_loss: f64,
     /// The longest step of all checks (s).
     #[serde(default)]
     pub longest_step: f64,
@@ -76,7 +83,7 @@ pub struct Extreme {
 pub struct Notice {
     /// The guard: `energy` or `hourglass`, `contact` for springs that make energy; `overlap` for bodies that are where
     /// others are; `contact_stiffness` for springs that have become stiffer with a shorter step; `implicit_step` for a
-    /// residual that an implicit step left.
+    /// residual that an implicit step left; `scheme_loss` for energy that their formula made.
     pub criterion: String,
     /// The part that it is about, or the two bodies; all bodies when empty.
     pub part: String,

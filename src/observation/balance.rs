@@ -163,6 +163,30 @@ pub(super) fn gives_back(memory: &mut GuardMemory, made: f64, settings: &GuardSe
     warn(memory, world, "contact", "", share, limit, message);
 }
 
+/// Warns of implicit steps whose formula has made energy, and gives that as a share of the largest energy so far; 0
+/// where it is not worth a warning. What it makes is an imbalance.
+pub(super) fn made_by_formula(memory: &mut GuardMemory, settings: &GuardSettings, world: &World) -> f64 {
+    let limit = settings.limits.energy.warn;
+    let share = (-memory.scheme_loss - memory.rounding) / memory.scale;
+    if settings.limits.off.contains(&Guard::Energy) || memory.scale <= 0.0 || share.is_nan() || share <= limit {
+        return 0.0;
+    }
+    if share > memory.imbalance.abs() {
+        memory.imbalance = share;
+    }
+    let message = format!(
+        "the formula of implicit steps has made {:.1} % of the largest energy so far ({:.1} % are a warning, {}), and did \
+         not take any: results are that uncertain; {}, or let less stick and slide by turns (a smaller `share` of \
+         springs of contact, less `friction`)",
+        100.0 * share,
+        100.0 * limit,
+        settings.limit_of_energy("warn"),
+        shorter_steps(world)
+    );
+    warn(memory, world, "scheme_loss", "", share, limit, message);
+    share
+}
+
 /// How much stiffer springs of contact become before it is told.
 const STIFFER: f64 = 1.25;
 

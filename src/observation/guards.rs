@@ -1,7 +1,7 @@
 //! Guards: what kernels found wrong in passing, and what a sample of energies and elements shows, told in the author's
 //! words.
 
-use super::balance::{balance, gives_back, see_scale, shorter_steps, stiffened};
+use super::balance::{balance, gives_back, made_by_formula, see_scale, shorter_steps, stiffened};
 use super::rounding::Rounding;
 use super::sample::{Sample, sample, sample_result};
 use crate::backend::cpu::BlockSums;
@@ -47,6 +47,9 @@ pub struct GuardSettings {
     pub springs: bool,
     /// Whether steps are implicit: limits of energy are ten times those that the scene has.
     pub implicit: bool,
+    /// Whether these are solved, and not as far as one iteration or a budget leads: energy that their formula makes ends
+    /// the run then.
+    pub solved: bool,
 }
 
 impl GuardSettings {
@@ -172,7 +175,9 @@ pub(super) fn check_balance(
     let rounding = world.get_resource::<Rounding>().map_or(0.0, |rounding| rounding.of_energy(&seen.reach));
     let clock = *world.resource::<Clock>();
     let Some(mut memory) = world.remove_resource::<GuardMemory>() else { return Ok(true) };
-    memory.checks += 1;
+    if memory.checked_at.replace(clock.step) != Some(clock.step) {
+        memory.checks += 1;
+    }
     memory.rounding = memory.rounding.max(rounding);
     remember(&mut memory, &seen, world);
     let (made, held) = balance(&mut memory, &seen, settings, last, world);
@@ -184,6 +189,7 @@ pub(super) fn check_balance(
     if settings.springs {
         stiffened(&mut memory, settings, world);
     }
+    let by_formula = if settings.implicit { made_by_formula(&mut memory, settings, world) } else { 0.0 };
     let (scale, rounding, passed) = (memory.scale, memory.rounding, memory.in_doubt.is_none());
     world.insert_resource(memory);
     if let Some((what, value)) = super::contacts::beyond_bound(world) {
@@ -193,6 +199,23 @@ pub(super) fn check_balance(
         return Err(Error::Unstable(Box::new(broken)));
     }
     let stop = settings.limits.energy.stop;
+    if by_formula > stop && settings.solved && !settings.foreign {
+        let what = format!(
+            "the formula of implicit steps has made {:.1} % of the largest energy so far, {:.1} % are allowed ({})",
+            100.0 * by_formula,
+            100.0 * stop,
+            settings.limit_of_energy("stop")
+        );
+        let cause = format!(
+            "steps that were not solved to their ends ({}), for what touches sticks and slides by turns (a smaller `share`, \
+             less `friction`), or a load or motion too sudden for the mesh (use a ramp)",
+            shorter_steps(world)
+        );
+        let criterion = Criterion { value: Some(by_formula), limit: Some(stop), ..Criterion::of("energy") };
+        let body = bodies(world);
+        let broken = instability(world, settings, body, what, &cause, criterion, good_until);
+        return Err(Error::Unstable(Box::new(broken)));
+    }
     if made <= stop * scale + rounding || settings.foreign {
         return Ok(passed);
     }

@@ -187,6 +187,7 @@ pub const UNITS: &[(&str, &str)] = &[
     ("guards.at_start", "J"),
     ("guards.scale", "J"),
     ("guards.imbalance", "1"),
+    ("guards.scheme_loss", "J"),
     ("guards.longest_step", "s"),
     ("guards.peaks.*", "J"),
     ("guards.hourglass.*", "1"),

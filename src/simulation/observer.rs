@@ -3,7 +3,7 @@
 use crate::components::*;
 use crate::observation::{GuardSettings, Observer, Track};
 use crate::scene::SceneFile;
-use crate::scene::schema::{ContactLaw, EnergyGuard, Guard};
+use crate::scene::schema::{ContactLaw, EnergyGuard, Guard, Solver};
 use bevy_ecs::prelude::*;
 
 /// How much more of the balance of energy implicit steps are allowed than explicit ones.
@@ -35,6 +35,7 @@ pub(super) fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut
         foreign: false,
         removal: world.query::<&Alive>().iter(world).next().is_some(),
         implicit: scene.scene.is_implicit(),
+        solved: matches!(scene.scene.solver, Solver::Implicit { newton: 2.., budget: None, .. }),
         contacts: !scene.scene.contacts.is_empty() && clock.relaxation.is_none(),
         springs: scene.scene.contacts.iter().any(|contact| contact.law() != ContactLaw::Kinematic)
             && clock.relaxation.is_none(),

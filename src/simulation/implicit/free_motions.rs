@@ -1,8 +1,13 @@
 //! Rigid motions of pieces of bodies that no constraint holds.
 
+mod unresisted;
+
+pub(super) use unresisted::Unresisted;
+
 use super::axes::Axes;
 use super::preconditioner::pieces;
 use crate::components::*;
+use crate::math::digits_beside;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use std::fmt;
@@ -140,24 +145,31 @@ impl FreeMotion {
 
 impl fmt::Display for FreeMotion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let in_words = |v: DVec3| format!("({}, {}, {})", rounded(v.x), rounded(v.y), rounded(v.z));
+        let in_words = |v: DVec3, digits| {
+            let [x, y, z] = v.to_array().map(|x| rounded(x, digits));
+            format!("({x}, {y}, {z})")
+        };
+        let size = self.nodes.iter().map(|(_, arm)| arm.length()).fold(0.0, f64::max);
+        let (of_places, of_directions) = (digits_beside(size), digits_beside(1.0));
         let what = match self.pieces {
             1 => format!("body {}", self.body),
-            _ => format!("a piece of body {} about {}", self.body, in_words(self.middle)),
+            _ => format!("a piece of body {} about {}", self.body, in_words(self.middle, of_places)),
         };
         let square = self.rotation.length_squared();
         if square > 0.0 {
             let through = self.middle + self.rotation.cross(self.translation) / square;
             let axis = self.rotation / square.sqrt();
-            return write!(f, "{what} turns about {} through {}", in_words(axis), in_words(through));
+            let (axis, through) = (in_words(axis, of_directions), in_words(through, of_places));
+            return write!(f, "{what} turns about {axis} through {through}");
         }
-        write!(f, "{what} moves along {}", in_words(self.translation.normalize_or_zero()))
+        write!(f, "{what} moves along {}", in_words(self.translation.normalize_or_zero(), of_directions))
     }
 }
 
-/// To four digits after the point, without those of rounding.
-fn rounded(x: f64) -> f64 {
-    (x * 1e4).round() / 1e4 + 0.0
+/// To so many digits after the point, without those of rounding.
+fn rounded(x: f64, digits: usize) -> f64 {
+    let parts = 10_f64.powi(digits as i32);
+    (x * parts).round() / parts + 0.0
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use super::super::ScheduledPass;
 use super::super::explain::SolverInUse;
 use super::axes::{Axes, Motion};
 use super::device::{OnDevice, in_words};
+use super::free_motions::Unresisted;
 use super::kept::Kept;
 use super::newton::{Found, Newton, Settings, Workspace};
 use super::place::Place;
@@ -67,6 +68,7 @@ impl Iterations {
             h,
             beyond: false,
             farthest: None,
+            unresisted: Unresisted::default(),
         }
     }
 

@@ -13,6 +13,7 @@ use super::differences::difference;
 use super::equation::Before;
 use super::forces_before::ForcesBefore;
 use super::formula::Formula;
+use super::free_motions::Unresisted;
 use super::place::Place;
 use super::preconditioner::{Operator, Preconditioner};
 use super::report::ImplicitSteps;
@@ -40,6 +41,9 @@ const THOROUGH: f64 = 1e-4;
 /// that it is to end after so many passes. What is warned of is a twentieth of that; beyond, forces and places have
 /// nothing to do with each other.
 const DIVERGED: f64 = 10.0;
+/// Of all forces the share that may be left where iterations leave more of the residual than there was when they began:
+/// what they have found is worse than where nobody had looked for anything.
+const WORSE: f64 = 0.1;
 /// Iterations of a linear solve without a budget.
 const MOST_PRODUCTS: u64 = 5000;
 
@@ -145,6 +149,8 @@ pub(super) struct Newton<'a, 'w> {
     pub beyond: bool,
     /// How far axes may go in an iteration (m), where who meets whom is looked for in each of them; at rest.
     pub farthest: Option<f64>,
+    /// Motions that may have no resistance, along which no iteration goes then; at rest.
+    pub unresisted: Unresisted,
 }
 
 impl Newton<'_, '_> {
@@ -173,7 +179,8 @@ impl Newton<'_, '_> {
                 tried = self.forces_at_w()?;
                 size = self.residual();
             }
-            let enough = self.settings.tolerance * self.scale(&tried);
+            let scale = self.scale(&tried);
+            let enough = self.settings.tolerance * scale;
             if iterations == ROUNDING_FROM && self.left() > 0 {
                 floor = self.rounding()?;
             }
@@ -183,10 +190,11 @@ impl Newton<'_, '_> {
             let taken = self.settings.newton > 1 || iterations > 0 || size == 0.0;
             let solved = taken && size <= enough && !moves;
             let ends = iterations >= self.settings.newton && !moves || self.left() < ITERATION + u64::from(moves);
-            let diverged = !solved && ends && size > DIVERGED * first && self.settings.budget.is_none();
-            if diverged && !told && !self.settings.formula.is_of_rest() {
+            let worse = self.settings.newton > 1 && size > first && size > WORSE * scale;
+            let diverged = !solved && ends && (worse || size > DIVERGED * first);
+            if diverged && self.settings.budget.is_none() && !told && !self.settings.formula.is_of_rest() {
                 return Err(Lost::Because(format!(
-                    "after {iterations} Newton iterations {:.0} times the residual of their beginning is left, {size:.3e} N{}",
+                    "after {iterations} Newton iterations {:.1} times the residual of their beginning is left, {size:.3e} N{}",
                     size / first,
                     self.what_is_beyond()
                 )));
@@ -325,7 +333,11 @@ impl Newton<'_, '_> {
     /// p ≈ A⁻¹ b on free axes; `moves`: where held axes still have to go.
     fn solve_linear(&mut self, tolerance: f64, moves: bool) -> Result<Way, Lost> {
         self.set_right(moves)?;
+        let Self { trial, space, unresisted, .. } = self;
+        let fields = unresisted.fields(&space.correction, &space.net, trial.springs);
+        fields.iter().for_each(|field| field.take_out(&mut space.residual));
         let Solved { ended, iterations, along } = self.conjugate_gradients(tolerance)?;
+        fields.iter().for_each(|field| field.take_out(&mut self.space.p));
         self.report.newton_iterations += 1;
         self.report.negative_curvatures += u64::from(ended == Ended::NegativeCurvature);
         if ended == Ended::NotFinite || !along.is_finite() {

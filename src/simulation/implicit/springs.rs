@@ -44,6 +44,11 @@ impl Springs {
         find_ties(world, first_axis, &mut self.ties);
     }
 
+    /// Each that touches.
+    pub fn touching(&self) -> &[TouchingSpring] {
+        &self.touching
+    }
+
     /// Takes a share of their forces from the residual (N) of free axes.
     pub fn press(&self, share: f64, free: &[bool], residual: &mut Reals) {
         for spring in &self.touching {

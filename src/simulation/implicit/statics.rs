@@ -7,7 +7,7 @@ use super::super::explain::SolverInUse;
 use super::axes::{Axes, Motion};
 use super::device::{bring_state, send_state};
 use super::formula::Formula;
-use super::free_motions::{FreeMotion, free_motions};
+use super::free_motions::{FreeMotion, Unresisted, free_motions};
 use super::grasped::Grasped;
 use super::iterations::{Iterations, OfForces};
 use super::kept::Kept;
@@ -251,6 +251,9 @@ impl Statics {
             Holds::Perhaps => return Ok(Balance::Loose),
             Holds::Nothing(motions) => return Ok(Balance::NotHeld(motions)),
         }
+        if are_all_forces_known(newton.trial.world) {
+            newton.unresisted = Unresisted::of(&motions);
+        }
         let found = newton.solve();
         let rest = match &found {
             // along a motion that nothing holds there is no resistance either
@@ -350,11 +353,14 @@ enum Holds {
     Nothing(Vec<String>),
 }
 
-/// What holds rigid motions that no constraint does, where all forces on nodes are known beforehand: those of systems
-/// of one's own may hold them elsewhere.
+/// Whether all forces on nodes are known beforehand: those of systems of one's own may hold nodes elsewhere.
+fn are_all_forces_known(world: &World) -> bool {
+    world.get_resource::<Keeping>().is_none_or(|keeping| keeping.written.is_empty())
+}
+
+/// What holds rigid motions that no constraint does, where all forces on nodes are known beforehand.
 fn holds(motions: &[FreeMotion], newton: &mut Newton<'_, '_>) -> Result<Holds, Error> {
-    let are_known = newton.trial.world.get_resource::<Keeping>().is_none_or(|keeping| keeping.written.is_empty());
-    if motions.is_empty() || !are_known {
+    if motions.is_empty() || !are_all_forces_known(newton.trial.world) {
         return Ok(Holds::Enough);
     }
     newton.forces_at_w()?;

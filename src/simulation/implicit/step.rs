@@ -15,7 +15,7 @@ use super::springs::Springs;
 use super::step_control::StepControl;
 use super::to_go::ToGo;
 use super::trial::Trial;
-use super::work::{add_internal_work, add_work};
+use super::work::{add_internal_work, add_work, taken_by_formula};
 use crate::components::*;
 use crate::error::{Criterion, Error};
 use crate::observation::Observer;
@@ -201,6 +201,10 @@ impl Implicit {
             grasped.note(trial.world, &place, &iterations.space.net, Some(&iterations.kept.forces));
             let count = if *works { add_work } else { add_internal_work };
             count(trial.world, axes, &iterations.kept.forces, &place);
+            let taken_by_it = taken_by_formula(trial.world, axes, &iterations.kept.forces, &place);
+            if let Some(mut memory) = trial.world.get_resource_mut::<GuardMemory>() {
+                memory.scheme_loss += taken_by_it;
+            }
             place.arrive(axes, trial.world);
         }
         iterations.count(trial.count);
@@ -280,9 +284,14 @@ fn not_found(world: &mut World, what: String) -> Error {
 
 /// That much of a residual was left.
 fn warn_of_residual(world: &mut World, left: f64) {
+    let results = if left <= 1.0 {
+        "results are those of a softer body"
+    } else {
+        "that is more than it began with, and what was found may be far off"
+    };
     let message = format!(
-        "an implicit step left {:.0} % of its residual ({:.0} % are a warning): results are those of a softer body; raise \
-         `budget` or `newton`, or take smaller steps",
+        "an implicit step left {:.0} % of its residual ({:.0} % are a warning): {results}; raise `budget` or `newton`, or \
+         take smaller steps",
         100.0 * left,
         100.0 * WARNED
     );

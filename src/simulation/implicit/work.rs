@@ -23,6 +23,50 @@ pub(super) fn add_internal_work(world: &mut World, axes: &Axes, before: &ForcesB
     }
 }
 
+/// What a step did at an axis (J).
+struct Spent {
+    by_loads: f64,
+    on_elements: f64,
+    damped: f64,
+    kinetic: f64,
+}
+
+impl Spent {
+    /// At an axis that had an acceleration before (m/s²), and has internal and external forces now (N).
+    fn at(place: &Place<'_>, before: &ForcesBefore, axis: usize, (acceleration, forces): (f64, [f64; 2])) -> Self {
+        let (motion, [internal, external]) = (place.motion, forces);
+        let (moved, first) = (place.moved(axis), motion.velocity(axis));
+        let velocity = place.arrival(axis, acceleration).0;
+        Self {
+            by_loads: 0.5 * (before.external.get(axis) + external) * moved,
+            on_elements: 0.5 * (before.internal.get(axis) + internal) * moved,
+            damped: motion.damping(axis) * 0.5 * (velocity + first) * moved,
+            kinetic: 0.5 * motion.mass.get(axis / 3) * (velocity * velocity - first * first),
+        }
+    }
+
+    /// What of a free axis went into the formula.
+    fn by_formula(&self) -> f64 {
+        self.by_loads - self.on_elements - self.damped - self.kinetic
+    }
+}
+
+/// What a step's formula takes of all free axes (J), as [`add_work`] has it node by node.
+pub(super) fn taken_by_formula(world: &World, axes: &Axes, before: &ForcesBefore, place: &Place<'_>) -> f64 {
+    let mut sum = 0.0;
+    for (body, range) in axes.each() {
+        let (internal, external) = (world.get::<InternalForce>(body), world.get::<ExternalForce>(body));
+        let accelerations = world.get::<Acceleration>(body);
+        for axis in range.clone().filter(|&axis| place.motion.free[axis]) {
+            let at = axis - range.start;
+            let acceleration = accelerations.map_or(0.0, |column| column.get(at));
+            let forces = [internal.map_or(0.0, |column| column.get(at)), external.map_or(0.0, |column| column.get(at))];
+            sum += Spent::at(place, before, axis, (acceleration, forces)).by_formula();
+        }
+    }
+    sum
+}
+
 /// Adds up what a step did. Forces work with the mean of those at both ends: of linear bodies that is what they
 /// store. What is missing then to the change of kinetic energy of a free axis went into the formula: implicit Euler
 /// takes ½ M Δv² + ½ Δu·ΔF, less what a change of loads gives.
@@ -43,11 +87,9 @@ pub(super) fn add_work(world: &mut World, axes: &Axes, before: &ForcesBefore, pl
         let accelerations = accelerations.map(|column| &column.0);
         for axis in range.clone() {
             let (at, node) = (axis - range.start, (axis - range.start) / 3);
-            let (moved, first) = (place.moved(axis), motion.velocity(axis));
-            let velocity = place.arrival(axis, of(accelerations, at)).0;
-            let of_loads = 0.5 * (before.external.get(axis) + of(external, at)) * moved;
-            let of_elements = 0.5 * (before.internal.get(axis) + of(internal, at)) * moved;
-            let damped = motion.damping(axis) * 0.5 * (velocity + first) * moved;
+            let forces = [of(internal, at), of(external, at)];
+            let spent = Spent::at(place, before, axis, (of(accelerations, at), forces));
+            let Spent { by_loads: of_loads, on_elements: of_elements, damped, .. } = spent;
             let mut add = |number: usize, part: f64| {
                 let place = WORK_NUMBERS * node + number;
                 let sum = work.get(place) + part;
@@ -63,9 +105,7 @@ pub(super) fn add_work(world: &mut World, axes: &Axes, before: &ForcesBefore, pl
                 add(2, of_elements - of_loads + damped);
             }
             if motion.free[axis] {
-                let mass = motion.mass.get(axis / 3);
-                let kinetic = 0.5 * mass * (velocity * velocity - first * first);
-                lost[at / 3] += of_loads - of_elements - damped - kinetic;
+                lost[at / 3] += spent.by_formula();
             }
         }
         if let Some(mut loss) = loss {
