@@ -3,6 +3,7 @@
 use super::BodyParts;
 use super::contacts::edge;
 use crate::components::Anchor;
+use crate::math::coordinates;
 use crate::mesh::{Locator, OnTriangle};
 use crate::scene::diagnostic::Diagnostics;
 use crate::skins::Embedding;
@@ -67,14 +68,14 @@ pub(super) fn anchor(
         let found = nearest((body, &mesh.points), at, &|_| true)?;
         let edge = edge(body);
         if found.distance > edge {
-            let (x, y, z) = found.at.into();
             diagnostics
                 .error_at(
                     path,
                     format!("nothing of `{name}` is there: the nearest place is {:.3e} m off", found.distance),
                 )
                 .note(format!(
-                    "it is at ({x:.5}, {y:.5}, {z:.5}); up to an edge of a face, {edge:.3e} m, may lie between"
+                    "it is at ({}); up to an edge of a face, {edge:.3e} m, may lie between",
+                    coordinates(found.at, edge)
                 ));
             return None;
         }

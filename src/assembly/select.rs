@@ -1,6 +1,7 @@
 //! Selections: names, places and numbers become marks on the author's nodes, faces and elements.
 
 use super::PlacedMesh;
+use crate::math::coordinates;
 use crate::mesh::{SurfaceFace, nodes_of_face, rotation_about_axes};
 use crate::scene::choice;
 use crate::scene::schema::Select;
@@ -119,9 +120,11 @@ fn some(placed: &PlacedMesh, select: &Select, marks: Vec<bool>, word: &str) -> R
 /// Where the body lies, and which of its nodes is nearest to a place where there is none.
 fn where_it_is(placed: &PlacedMesh, select: &Select) -> Vec<String> {
     let (low, high) = placed.extent();
+    let size = (high - low).max_element();
     let mut notes = vec![format!(
-        "the body lies between ({:.4}, {:.4}, {:.4}) and ({:.4}, {:.4}, {:.4}), in metres, after scale, rotate and translate",
-        low.x, low.y, low.z, high.x, high.y, high.z
+        "the body lies between ({}) and ({}), in metres, after scale, rotate and translate",
+        coordinates(low, size),
+        coordinates(high, size)
     )];
     let mesh = &placed.mesh;
     let nearest = distance_to(select).and_then(|distance| {
@@ -130,10 +133,10 @@ fn where_it_is(placed: &PlacedMesh, select: &Select) -> Vec<String> {
     });
     if let Some((row, distance)) = nearest {
         let (id, at) = (mesh.point_ids.of(row), placed.points()[row]);
-        let place = format!("({:.4}, {:.4}, {:.4})", at.x, at.y, at.z);
+        let place = coordinates(at, size);
         notes.push(match distance > 0.0 {
-            true => format!("the nearest node is {id} at {place}, {distance:.3e} m off"),
-            false => format!("some nodes are there, such as {id} at {place}, but not all of any face or element"),
+            true => format!("the nearest node is {id} at ({place}), {distance:.3e} m off"),
+            false => format!("some nodes are there, such as {id} at ({place}), but not all of any face or element"),
         });
     }
     notes

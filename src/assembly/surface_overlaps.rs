@@ -4,6 +4,7 @@
 use super::{Assembly, BodyParts};
 use crate::components::*;
 use crate::contact::{TURNED_AWAY, Tree};
+use crate::math::coordinates;
 use crate::mesh::{Locator, Mesh, OnTriangle};
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::Contact;
@@ -251,7 +252,7 @@ fn narrow_gaps(name: &str, rest: &Outside, near: f64, path: &str, diagnostics: &
     let Some(&(gap, node)) = found.first() else { return };
     let (many, nodes) = rest.told(&found);
     let (are, they, them) = if found.len() == 1 { ("is", "it", "it") } else { ("are", "they", "them") };
-    let at = rest.at(node).to_array().map(|x| format!("{x:.4}")).join(", ");
+    let at = coordinates(rest.at(node), near);
     diagnostics
         .warn_at(
             path,

@@ -5,6 +5,7 @@ use super::BodyParts;
 use super::surface_overlaps::at_start;
 use crate::components::*;
 use crate::contact::immersed;
+use crate::math::coordinates;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Contact, Scene, Select};
 use crate::tools::Geometry;
@@ -47,13 +48,13 @@ pub(super) fn check(
     }
     let mesh = at_start(body, world);
     if let Some((at, element)) = immersed(geometry, pose, &mesh, DEEPEST * edge) {
-        let [x, y, z] = at.to_array();
         diagnostics
             .error_at(
                 format!("tools.\"{tool}\"").as_str(),
                 format!(
-                    "the tool `{tool}` is in `{name}` at the start: its surface at ({x:.4}, {y:.4}, {z:.4}) m is in element {}, \
-                     more than half an edge of a face, {:.3e} m, below the surface of `{name}`",
+                    "the tool `{tool}` is in `{name}` at the start: its surface at ({}) m is in element {}, more \
+                     than half an edge of a face, {:.3e} m, below the surface of `{name}`",
+                    coordinates(at, *edge),
                     mesh.element_ids.of(element),
                     DEEPEST * edge
                 ),

@@ -2,6 +2,7 @@
 //! with `f64` it is the reference, with [`F32s`] and [`F64s`] it is what the CPU backend runs, a register at a time.
 
 mod broadcast;
+mod coordinates;
 mod eigen;
 mod elementary;
 mod extremes;
@@ -19,6 +20,7 @@ pub use simd::SimdScalar;
 pub use tensor::{Mat3, Sym3};
 
 // what the engine, the crates on top and tests see beside: no version keeps their names and types
+pub(crate) use coordinates::{coordinates, digits_beside};
 pub(crate) use extremes::{Extremes, ROUNDING, See};
 pub(crate) use noise::noise;
 pub(crate) use polar::Polar;

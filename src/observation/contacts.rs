@@ -11,12 +11,12 @@ use glam::DVec3;
 pub struct ContactReading {
     /// The force on it (N); what it does to itself is 0 in sum.
     pub force: DVec3,
-    /// How many of its nodes touch faces; of points of faces too, each as one.
-    pub nodes: usize,
+    /// How many of its points touch faces: of its nodes, and where `points: Faces` looks at them of points of its faces.
+    pub points: usize,
     /// How deep the deepest of these is inside (m); 0 where none is.
     pub penetration: f64,
-    /// What impact and friction at these have taken since the start (J).
-    pub loss: f64,
+    /// What impact and friction at these have taken since the start (J); none in a static analysis, which counts none.
+    pub loss: Option<f64>,
 }
 
 /// What a body feels; `None` of one that may not meet others or itself.
@@ -29,16 +29,18 @@ pub fn read_contact(world: &mut World, body: Entity) -> Result<Option<ContactRea
         return Ok(None);
     };
     let mut reading = ContactReading { force: force.vectors().sum(), ..ContactReading::default() };
+    let mut loss = 0.0;
     let of_faces = world.get::<FaceTouch>(body).map(|touch| &touch.0);
     let starts = |touch: &Reals| (0..touch.len()).step_by(MEETING_NUMBERS);
     let points = [Some(&touch.0), of_faces].into_iter().flatten();
     for (touch, first) in points.flat_map(|touch| starts(touch).map(move |first| (touch, first))) {
         if touch.get(first + 4) > 1.0 {
-            reading.nodes += 1;
+            reading.points += 1;
             reading.penetration = reading.penetration.max(-touch.get(first + 5));
         }
-        reading.loss += touch.get(first + 7);
+        loss += touch.get(first + 7);
     }
+    reading.loss = world.resource::<Clock>().relaxation.is_none().then_some(loss);
     Ok(Some(reading))
 }
 
@@ -55,8 +57,11 @@ pub(super) fn beyond_bound(world: &World) -> Option<(String, f64)> {
 
 /// What contact has taken since the start (J): impact and friction where bodies touch each other and themselves, and
 /// what tools lose, to catching nodes too; the sum of what [`read_contact`] and [`read_tool`](super::read_tool) tell.
-/// `None` where nothing may touch.
+/// `None` where nothing may touch, and in a static analysis, which counts none.
 pub(super) fn loss(world: &mut World) -> Result<Option<f64>, Error> {
+    if world.resource::<Clock>().relaxation.is_some() {
+        return Ok(None);
+    }
     let wanted = [SurfaceTouch::NAME, FaceTouch::NAME, ToolTouch::NAME, ToolHold::NAME];
     // what free tools do to nodes
     let steps = world.contains_resource::<FreeTools>();

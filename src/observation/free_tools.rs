@@ -19,7 +19,8 @@ pub(super) fn read(world: &World, name: &str) -> Option<ToolReading> {
     let pose = tool.pose(&state.motion);
     let (force, moment) = state.felt();
     // where it was when forces acted
-    let dt = world.resource::<Clock>().time_step;
+    let clock = world.resource::<Clock>();
+    let dt = clock.time_step;
     let earlier = tool.pose(&state.motion.after(-dt, &tool.inertia));
     let center = earlier.place(tool.inertia.center);
     let free = FreeReading {
@@ -40,8 +41,8 @@ pub(super) fn read(world: &World, name: &str) -> Option<ToolReading> {
         slipped: 0,
         penetration: penetration(world, tool, &pose, reference),
         suction: DVec3::ZERO,
-        work: -state.contact_work,
-        loss: lost(world, tool, state),
+        work: clock.relaxation.is_none().then_some(-state.contact_work),
+        loss: clock.relaxation.is_none().then(|| lost(world, tool, state)),
         free: Some(free),
     })
 }

@@ -7,18 +7,15 @@ use glam::DVec3;
 
 /// Adds what a tool feels of what it holds, with all columns on the host and tools where they are now.
 pub(super) fn read(world: &mut World, tool: &str, now: &[(usize, Pose)], reading: &mut ToolReading) {
-    // implicit steps have their forces at their ends
-    let back = if world.resource::<Clock>().velocities_at_ends { 0.0 } else { 1.0 };
-    let mut bodies = world.query::<(&Grasps, &ToolHold, &Mass, &RestPosition, &Displacement, &DisplacementIncrement)>();
-    for (grasps, hold, mass, rest, u, step) in bodies.iter(world) {
+    let mut bodies = world.query::<(&Grasps, &ToolHold, &Mass, &RestPosition, &Displacement)>();
+    for (grasps, hold, mass, rest, u) in bodies.iter(world) {
         for (number, grasp) in grasps.grasps.iter().enumerate().filter(|(_, grasp)| grasp.tool.tool == tool) {
             let Some(pose) = now.iter().find(|(slot, _)| *slot == grasp.tool.signal).map(|(_, pose)| *pose) else {
                 continue;
             };
             for (place, &row) in grasps.rows.iter().enumerate() {
                 let (first, row) = (grasps.numbers() * place + grasps.numbers_a_grasp() * number, row as usize);
-                reading.work += hold.get(first + 4);
-                reading.loss += hold.get(first + 5);
+                reading.spend(hold.get(first + 4), hold.get(first + 5));
                 // nodes whose elements are gone are held by nobody
                 if mass.get(row) <= 0.0 {
                     continue;
@@ -27,10 +24,10 @@ pub(super) fn read(world: &mut World, tool: &str, now: &[(usize, Pose)], reading
                 reading.slipped += usize::from(ToolHold::has_slipped(holds));
                 // who slips out is held to the end of the step
                 if holds == ToolHold::HELD || force != DVec3::ZERO {
-                    let begin = rest.0[row] - grasps.reference + u.vector(row) - back * step.vector(row);
+                    let end = rest.0[row] - grasps.reference + u.vector(row);
                     reading.nodes += 1;
                     reading.force += force;
-                    reading.torque += (begin - pose.at).cross(force);
+                    reading.torque += (end - pose.at).cross(force);
                 }
             }
         }

@@ -339,12 +339,13 @@ impl Observer {
     /// That an implicit step was not found; `rubs`: where something touched with friction.
     pub fn unsolved(&self, world: &World, (found, rubs): (String, bool), criterion: Criterion) -> Error {
         let cause = if rubs {
-            "a step too long for how bodies move (smaller `step` of `solver`), springs of contact that stick and slide by \
-             turns (a smaller `share`, less `friction`, or a shorter step), a load or motion too large for the mesh, or \
-             bodies that give way: buckling, a law that softens"
+            "a step too long for how bodies move (smaller `step` of `solver`, or `adaptive` ones, which become shorter where \
+             one is not found), springs of contact that stick and slide by turns (a smaller `share`, less `friction`, or \
+             such steps), a load or motion too large for the mesh, or bodies that give way: buckling, a law that softens"
         } else {
-            "a step too long for how bodies move (smaller `step` of `solver`), a load or motion too large for the mesh, or \
-             bodies that give way: buckling, a law that softens"
+            "a step too long for how bodies move (smaller `step` of `solver`, or `adaptive` ones, which become shorter where \
+             one is not found), a load or motion too large for the mesh, or bodies that give way: buckling, a law that \
+             softens"
         };
         let nowhere = String::new();
         let broken =

@@ -6,6 +6,7 @@ mod tools;
 use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::Error;
+use crate::math::coordinates;
 use crate::mesh::{Locator, Mesh};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -125,9 +126,9 @@ fn message(found: &Overlap, one: &str, other: &str, kept: Kept) -> String {
     )
 }
 
-/// A place (m) as messages say it.
+/// A place (m) as messages say it, to three digits of its largest coordinate at least.
 fn message_at(at: DVec3) -> String {
-    at.to_array().map(|x| format!("{x:.4}")).join(", ")
+    coordinates(at, at.abs().max_element())
 }
 
 fn place(world: &World, entity: Entity) -> Option<Placed<'_>> {

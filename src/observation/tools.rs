@@ -24,13 +24,22 @@ pub struct ToolReading {
     pub penetration: f64,
     /// The part of the force that is of what it sucks (N).
     pub suction: DVec3,
-    /// The work that it has done since the start (J).
-    pub work: f64,
-    /// What of this work impact, friction and catching nodes have taken (J).
-    pub loss: f64,
+    /// The work that it has done since the start (J); none in a static analysis, which counts none.
+    pub work: Option<f64>,
+    /// What of this work impact, friction and catching nodes have taken (J); none in a static analysis, likewise.
+    pub loss: Option<f64>,
     /// Of one that moves freely, how.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub free: Option<FreeReading>,
+}
+
+impl ToolReading {
+    /// Adds work, and what of it is lost (J), where these are counted.
+    pub(super) fn spend(&mut self, work: f64, loss: f64) {
+        for (sum, more) in [(&mut self.work, work), (&mut self.loss, loss)] {
+            *sum = sum.map(|sum| sum + more);
+        }
+    }
 }
 
 /// How a free tool moves.
@@ -54,7 +63,8 @@ pub struct FreeReading {
     pub damping_loss: f64,
 }
 
-/// What a tool feels. Forces are those of the beginning of the step that led here, and act there.
+/// What a tool feels. Forces are those of the step that led here; their arms are those of its end, where contact and
+/// grasps have put nodes on the tool.
 ///
 /// # Errors
 /// What the GPU says.
@@ -74,15 +84,13 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
     }
     let clock = *world.resource::<Clock>();
     let now = poses_now(world);
-    // implicit steps have their forces at their ends
-    let back = if clock.velocities_at_ends { 0.0 } else { 1.0 };
-    let mut reading = ToolReading::default();
+    let counted = clock.relaxation.is_none().then_some(0.0);
+    let mut reading = ToolReading { work: counted, loss: counted, ..ToolReading::default() };
     let of_tool =
         slot_of(world, tool).and_then(|(slot, reference)| Some((now.iter().find(|of| of.0 == slot)?, reference)));
     reading.place = of_tool.map_or(DVec3::ZERO, |((_, pose), reference)| pose.at + reference);
-    let mut bodies =
-        world.query::<(&ToolContacts, &ToolTouch, &Mass, &RestPosition, &Displacement, &DisplacementIncrement)>();
-    for (contacts, touch, mass, rest, u, step) in bodies.iter(world) {
+    let mut bodies = world.query::<(&ToolContacts, &ToolTouch, &Mass, &RestPosition, &Displacement)>();
+    for (contacts, touch, mass, rest, u) in bodies.iter(world) {
         for (number, contact) in contacts.tools.iter().enumerate().filter(|(_, contact)| contact.tool == tool) {
             let Some(pose) = now.iter().find(|(slot, _)| *slot == contact.signal).map(|(_, pose)| *pose) else {
                 continue;
@@ -95,8 +103,7 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
                 let row = row as usize;
                 let at = contacts.numbers_a_tool() * (contacts.tools.len() * place + number);
                 let number = |i: usize| touch.get(at + i);
-                reading.work += number(5);
-                reading.loss += number(6);
+                reading.spend(number(5), number(6));
                 // what is left of nodes whose elements are gone is nowhere
                 if mass.get(row) <= 0.0 {
                     continue;
@@ -111,7 +118,7 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
                     let force = -DVec3::new(number(0), number(1), number(2));
                     reading.nodes += 1;
                     reading.force += force;
-                    reading.torque += (end - back * step.vector(row) - pose.at).cross(force);
+                    reading.torque += (end - pose.at).cross(force);
                 }
             }
         }
@@ -184,18 +191,19 @@ fn slot_of(world: &mut World, tool: &str) -> Option<(usize, DVec3)> {
     found.into_iter().min_by_key(|(slot, _)| *slot)
 }
 
-/// The force on a tool of what it sucks at a body (N), and its moment about a place (N m): faces as they were at the
-/// beginning of the step that led here, each with its force at its centroid.
+/// The force on a tool of what it sucks at a body (N), and its moment about a place (N m): of faces as they were at the
+/// beginning of the step that led here, each with its force at its centroid as that is now.
 fn suction_at(world: &World, suction: &Suction, body: Entity, about: DVec3) -> Option<(DVec3, DVec3)> {
     let (rest, u, step) =
         (world.get::<RestPosition>(body)?, world.get::<Displacement>(body)?, world.get::<DisplacementIncrement>(body)?);
     let mut now = suction.clone();
     now.renew(world.get::<SuctionMarks>(body)?, world.get::<SuctionPressure>(body)?);
-    let place = |node: u32| rest.0[node as usize] + u.vector(node as usize) - step.vector(node as usize);
+    let place = |node: u32| rest.0[node as usize] + u.vector(node as usize);
     let mut sums = (DVec3::ZERO, DVec3::ZERO);
     for (nodes, weight) in now.active.faces.iter().zip(&now.active.weights) {
-        let [a, b, c, d] = nodes.map(place);
+        let [a, b, c, d] = nodes.map(|node| place(node) - step.vector(node as usize));
         let force = -now.now * weight * 0.5 * (c - a).cross(d - b);
+        let [a, b, c, d] = nodes.map(place);
         let centroid = if nodes[2] == nodes[3] { (a + b + c) / 3.0 } else { (a + b + c + d) / 4.0 };
         sums.0 += force;
         sums.1 += (centroid - about).cross(force);

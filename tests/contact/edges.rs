@@ -72,7 +72,7 @@ fn bars_that_meet_crosswise_with_their_edges_do_not_pass() {
             let [low, high] = ["low", "high"].map(|body| momentum(&mut simulation, body));
             near(&what, (low + high - before).length(), 0.0, before.length(), run.bound(1e-10, 1e-5));
             assert!(low.z < high.z, "{what}: they part: {low} and {high}");
-            assert!(simulation.contact("low").unwrap().loss >= 0.0, "{what}");
+            assert!(simulation.contact("low").unwrap().loss.unwrap() >= 0.0, "{what}");
         }
     }
 }
@@ -108,7 +108,7 @@ fn edges_and_faces_on_a_gpu_do_as_on_the_cpu_and_the_same_every_time() {
     for body in bodies {
         let [here, there] = [&mut cpu, &mut one].map(|run| momentum(run, body));
         near(body, (here - there).length(), 0.0, here.length(), 1e-3);
-        let [here, there] = [&mut cpu, &mut one].map(|run| run.contact(body).unwrap().loss);
+        let [here, there] = [&mut cpu, &mut one].map(|run| run.contact(body).unwrap().loss.unwrap());
         assert!(here > 1e-5, "{body}: they touched");
         near(body, there, here, here, 1e-3);
     }
@@ -123,12 +123,12 @@ fn bits_of_edges_and_faces_do_not_depend_on_threads_lists_or_pauses() {
         let start = |threads: usize| crate::bits::start(scene, precision, threads);
         let bits = |simulation: &mut Simulation| crate::bits::bits(simulation, &["a", "b"]);
         let mut one = start(1);
-        while one.contact("b").unwrap().nodes == 0 {
+        while one.contact("b").unwrap().points == 0 {
             assert!(one.time() < 0.04, "they never touch");
             one.advance(1).unwrap();
         }
         one.advance(30).unwrap();
-        assert!(one.contact("b").unwrap().loss != 0.0, "they touched");
+        assert!(one.contact("b").unwrap().loss.unwrap() != 0.0, "they touched");
         let steps = one.step_count();
         let wanted = bits(&mut one);
         let mut other = start(3);

@@ -57,8 +57,14 @@ fn a_free_tool_beside_a_guided_one_at_the_same_nodes_loses_what_it_can() {
         let [before, after] = [0.15, 0.3].map(|time| {
             simulation.advance_to(time).unwrap();
             let (k, p) = (simulation.tool("k").unwrap(), simulation.tool("p").unwrap());
-            println!("{}, {time} s: k lost {:e} J, p did {:e} J and lost {:e}", run.name, k.loss, p.work, p.loss);
-            (k.loss, p.work)
+            println!(
+                "{}, {time} s: k lost {:e} J, p did {:e} J and lost {:e}",
+                run.name,
+                k.loss.unwrap(),
+                p.work.unwrap(),
+                p.loss.unwrap()
+            );
+            (k.loss.unwrap(), p.work.unwrap())
         });
         near(&format!("{}: lost", run.name), after.0, 0.0, after.1, 0.1);
         near(&format!("{}: lost when all is still", run.name), after.0, before.0, after.1, 0.01);

@@ -31,6 +31,7 @@ fn at_rest(elements: &str, depth: f64, contact: &str) -> (f64, f64) {
     assert!(found.reached && found.residual <= 1e-6, "{contact}: {found:?}");
     let [base, lid] = ["base", "lid"].map(|probe| simulation.probe(probe).unwrap()[0]);
     let reading = simulation.contact("high").unwrap();
+    assert!(reading.loss.is_none(), "nothing at rest counts what is lost: {reading:?}");
     near(&format!("{elements}, {contact}: base"), base.abs(), reading.force.z, reading.force.z, 1e-6);
     near(&format!("{elements}, {contact}: lid"), lid.abs(), reading.force.z, reading.force.z, 1e-6);
     println!("{elements}, {contact}: {} N, {} m", reading.force.z, reading.penetration);

@@ -75,7 +75,7 @@ fn a_run_goes_on_from_any_step_while_touching_surfaces_go() {
                 kept.push(bytes(&mut whole));
             }
             whole.advance(1).unwrap();
-            touched = touched.max(whole.contact("low").unwrap().nodes);
+            touched = touched.max(whole.contact("low").unwrap().points);
             let (sum, size) = forces(&mut whole);
             // who is on no surface any more bears nothing: else one side would have more than the other
             let bound = if precision == Precision::F64 { 1e-12 } else { 1e-5 };
@@ -116,7 +116,7 @@ fn a_run_goes_back_to_as_many_other_elements() {
             let mut touched = 0;
             for _ in 0..40 {
                 simulation.advance(1).unwrap();
-                touched = touched.max(simulation.contact("low").unwrap().nodes);
+                touched = touched.max(simulation.contact("low").unwrap().points);
             }
             assert!(touched > 3, "{precision:?}: {touched}");
         }

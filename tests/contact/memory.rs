@@ -24,7 +24,7 @@ fn bytes_a_face(elements: &str, cells: u32, contact: &str, far: bool) -> f64 {
     );
     let mut simulation = start(&text, Precision::F32, 1);
     simulation.advance(40).unwrap();
-    assert_eq!(simulation.contact("high").unwrap().nodes == 0, far);
+    assert_eq!(simulation.contact("high").unwrap().points == 0, far);
     let explained = simulation.explain(&Registry::default()).unwrap();
     explained.contacts.iter().find(|found| found.system == "surface_contact").unwrap().bytes_a_face
 }

@@ -95,6 +95,7 @@ mod tables;
 mod tool_friction;
 mod tool_meshes;
 mod tool_removal;
+mod tool_torques;
 mod tool_turns;
 mod tools;
 mod true_limit;

@@ -115,6 +115,17 @@ fn elements_that_are_gone_overlap_with_nothing() {
     }
 }
 
+/// Cubes of 20 μm, half in each other.
+#[test]
+fn where_small_bodies_overlap_is_told_with_the_digits_that_it_takes() {
+    let cells = [(1, 2e-5, [0.0; 3]), (1, 2e-5, [1e-5, 0.0, 0.0])];
+    let told = warned(&configurations()[0].options, "Hex8", &cells, "");
+    assert_eq!(told.len(), 1, "{told:?}");
+    let at = told[0].message.split(['(', ')']).nth(1).unwrap();
+    let largest = at.split(", ").map(|x| x.parse::<f64>().unwrap()).fold(0.0, f64::max);
+    assert!((0.9e-5..2.1e-5).contains(&largest), "{told:?}");
+}
+
 /// A bead, narrower than faces are, is driven into a coarse block between its nodes, which contact does not see.
 #[test]
 fn a_tool_that_goes_into_a_body_between_its_nodes_is_warned_of_when_it_is_there() {
@@ -133,6 +144,8 @@ fn a_tool_that_goes_into_a_body_between_its_nodes_is_warned_of_when_it_is_there(
                 told[0].part == "bead and b0" && told[0].message.contains("the tool bead is in b0 at ("),
                 "{told:?}"
             );
+            // a bead between nodes is there however slow it comes
+            assert!(told[0].message.contains("presses less deep") && !told[0].message.contains("slower"), "{told:?}");
         }
     }
 }
@@ -144,15 +157,20 @@ fn a_tool_in_fixed_nodes_is_warned_of() {
         format!(
             "tools: {{\"plane\": (shape: Plane(), at: (0, 0, 0.101), rotation: (180, 0, 0),
                 moves: [(displacement: (0, 0, -0.006), curve: Ramp(end: 0.1))])}},
-            contacts: [Tool(tool: \"plane\")], constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: {held}))]"
+            contacts: [Tool(tool: \"plane\")], constraints: [Fixed(on: {held})]"
         )
     };
     for run in &configurations() {
-        assert_eq!(warned(&run.options, "Hex8", &[(4, 0.1, [0.0; 3])], &rest("0")), []);
-        let told = warned(&run.options, "Hex8", &[(4, 0.1, [0.0; 3])], &rest("0.1"));
-        assert_eq!(told.len(), 1, "{}: {told:?}", run.name);
-        let said = "the tool plane is in 25 nodes of b0 that are fixed or prescribed, the deepest by ";
-        assert!(told[0].message.contains(said) && told[0].part == "plane and led nodes of b0", "{told:?}");
+        assert_eq!(warned(&run.options, "Hex8", &[(4, 0.1, [0.0; 3])], &rest("Set(\"z0\")")), []);
+        for (held, said) in [
+            ("Set(\"z1\")", "is in 25 nodes of b0 that are fixed or prescribed, the deepest by "),
+            ("Nodes([124])", "is in a node of b0 that is fixed or prescribed, by "),
+        ] {
+            let told = warned(&run.options, "Hex8", &[(4, 0.1, [0.0; 3])], &rest(held));
+            assert_eq!(told.len(), 1, "{}, {held}: {told:?}", run.name);
+            let is_said = told[0].message.contains(&format!("the tool plane {said}"));
+            assert!(is_said && told[0].part == "plane and led nodes of b0", "{told:?}");
+        }
     }
 }
 

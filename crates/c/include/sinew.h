@@ -451,7 +451,8 @@ typedef struct {
      */
     double real_time_factor;
     /**
-     * The number of the pose that the batch went to; 0 where none had come.
+     * The number of the pose that the batch went to; 0 where none had come since the port was opened and since the
+     * run last went back.
      */
     uint64_t answers;
     /**
@@ -557,11 +558,11 @@ typedef struct {
      */
     double penetration;
     /**
-     * The work that it has done since the start (J).
+     * The work that it has done since the start (J); NaN in a static analysis, which counts none.
      */
     double work;
     /**
-     * What of it impact, friction and catching nodes have taken (J).
+     * What of it impact, friction and catching nodes have taken (J); NaN likewise.
      */
     double loss;
     /**

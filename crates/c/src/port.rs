@@ -75,7 +75,8 @@ pub struct SinewTouch {
     pub stiffness: f64,
     /// What the batch took on the wall over its simulated time.
     pub real_time_factor: f64,
-    /// The number of the pose that the batch went to; 0 where none had come.
+    /// The number of the pose that the batch went to; 0 where none had come since the port was opened and since the
+    /// run last went back.
     pub answers: u64,
     /// 1 if it touched or held anything during the batch, or sucks at something at its end.
     pub in_contact: i32,

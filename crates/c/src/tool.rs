@@ -23,9 +23,9 @@ pub struct SinewTool {
     pub suction: [f64; 3],
     /// How deep the deepest node is inside it (m).
     pub penetration: f64,
-    /// The work that it has done since the start (J).
+    /// The work that it has done since the start (J); NaN in a static analysis, which counts none.
     pub work: f64,
-    /// What of it impact, friction and catching nodes have taken (J).
+    /// What of it impact, friction and catching nodes have taken (J); NaN likewise.
     pub loss: f64,
     /// How many nodes slipped out of its grasps when these were closed last.
     pub slipped: u64,
@@ -55,8 +55,8 @@ pub unsafe extern "C" fn sinew_tool(
             place: felt.place.to_array(),
             suction: felt.suction.to_array(),
             penetration: felt.penetration,
-            work: felt.work,
-            loss: felt.loss,
+            work: felt.work.unwrap_or(f64::NAN),
+            loss: felt.loss.unwrap_or(f64::NAN),
             slipped: felt.slipped as u64,
         };
         write(tool, told, "tool")

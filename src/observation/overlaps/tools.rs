@@ -81,20 +81,29 @@ fn unfelt(world: &World, pair: &Pair, (time, step): (f64, u64)) -> [Option<Notic
         }
     }
     let (tool, label) = (&pair.tool, &pair.label);
-    let notice = |(count, deepest): (usize, f64), of: &str, that: &str, then: &str| {
-        let nodes = if count == 1 { "a node".to_string() } else { format!("{count} nodes") };
-        let message =
-            format!("the tool {tool} is in {nodes} of {label} that {that}, the deepest by {deepest:.3e} m: {then}");
+    let notice = |(count, deepest): (usize, f64), of: &str, that: [&str; 2], then: &str| {
+        let message = match count {
+            1 => format!("the tool {tool} is in a node of {label} that {}, by {deepest:.3e} m: {then}", that[0]),
+            _ => format!(
+                "the tool {tool} is in {count} nodes of {label} that {}, the deepest by {deepest:.3e} m: {then}",
+                that[1]
+            ),
+        };
         let (criterion, part) = (OVERLAP.to_string(), format!("{tool} and {of} nodes of {label}"));
         (count > 0).then_some(Notice { criterion, part, time, step, value: 1.0, limit: 0.0, message })
     };
     [
-        notice(led, "led", "are fixed or prescribed", "it feels nothing of them; hold nodes that it does not reach"),
+        notice(
+            led,
+            "led",
+            ["is fixed or prescribed", "are fixed or prescribed"],
+            "it feels nothing there; hold nodes that it does not reach",
+        ),
         notice(
             held,
             "held",
-            "another closed tool holds",
-            "both want them elsewhere, and what each feels is by the step; hold nodes that it does not reach",
+            ["another closed tool holds"; 2],
+            "each of both tools has its own way, and what they feel is by the step; hold nodes that it does not reach",
         ),
     ]
 }
@@ -113,7 +122,8 @@ fn holds(world: &World, pair: &Pair, row: u32) -> bool {
 fn message(Pair { tool, edge, .. }: &Pair, body: &Placed<'_>, (at, element): (DVec3, usize)) -> String {
     format!(
         "the tool {tool} is in {} at ({}) m: its surface is in element {}, more than half an edge of a face, {:.3e} m, \
-         below that of {}; finer faces, a thicker tool or slower motion keep it out",
+         below that of {}; contact is of nodes, however slow the tool is: finer faces, a thicker tool or one that presses \
+         less deep keep it out",
         body.label,
         message_at(at),
         body.authoring.element_ids.of(element),

@@ -324,7 +324,8 @@ class Simulation:
         """What the run amounted to so far, as `summary.json` has it; `ended` stands in it."""
 
     def tool(self, name: str) -> dict[str, Any]:
-        """What a tool feels: `force` (N), `torque` (N m), `place` (m), `nodes`, `penetration` (m) and more."""
+        """What a tool feels: `force` (N), `torque` (N m), `place` (m), `nodes`, `penetration` (m) and more; `work` and
+        `loss` (J) are None in a static analysis, which counts none."""
 
     def attachment(self, name: str) -> dict[str, Any]:
         """What a suture, tie or glue bears."""

@@ -41,7 +41,7 @@ const PLANES: [&str; 6] = ["floor", "lid", "left", "right", "front", "back"];
 fn all_of_it(simulation: &mut Simulation, weight: f64) -> Result<[f64; 2], Error> {
     let mut more = weight * gone(simulation, "body")?.z;
     for plane in PLANES {
-        more += simulation.tool(plane)?.loss;
+        more += simulation.tool(plane)?.loss.unwrap_or(f64::NAN);
     }
     let energies = simulation.energies()?;
     Ok([energies.kinetic + energies.strain + energies.hourglass + more, kinetic_and_spent(simulation)? + more])
@@ -65,7 +65,7 @@ pub fn bouncing(trial: &mut Trial<'_>) -> Result<(), Error> {
         worst = [0, 1].map(|i| worst[i].max((now[i] / start[i] - 1.0).abs()));
     }
     for plane in PLANES {
-        touched += usize::from(simulation.tool(plane)?.loss > 0.0);
+        touched += usize::from(simulation.tool(plane)?.loss.unwrap_or(f64::NAN) > 0.0);
     }
     trial.most("drift of energy by the laws", worst[0], trial.bound(1e-3, 1e-2));
     trial.most("drift of energy as it was spent", worst[1], trial.bound(1e-3, 1e-2));

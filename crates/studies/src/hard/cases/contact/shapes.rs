@@ -89,7 +89,7 @@ pub fn wound(trial: &mut Trial<'_>) -> Result<(), Error> {
             let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
             volume = [volume[0].min(mean), volume[1].max(mean)];
         }
-        touching = touching.max(simulation.contact("body")?.nodes);
+        touching = touching.max(simulation.contact("body")?.points);
     }
     trial.least("nodes that touch", touching as f64, 10.0);
     trial.least("volume over that at rest, least", volume[0], 0.97);
