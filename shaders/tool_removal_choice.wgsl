@@ -21,7 +21,8 @@ fn first_of(a: vec3<u32>, b: vec3<u32>) -> vec3<u32> {
 
 @compute @workgroup_size(64)
 fn tool_removal_choice(@builtin(local_invocation_index) lane: u32) {
-    let of_step = step.signals[choice.rate].x * step.time_step;
+    // nothing is given back
+    let of_step = max(step.signals[choice.rate].x * step.time_step, 0.0);
     if lane == 0u && tool_intake[choice.intake + 1u] != 0.0 {
         tool_intake[choice.intake] += of_step;
     }
@@ -68,7 +69,7 @@ fn tool_removal_choice(@builtin(local_invocation_index) lane: u32) {
     if lane == 0u {
         // nothing is left in reach: what is more was no tissue
         if tool_reach[choice.chosen] == found {
-            let most = choice.largest + f32(CRITERION_STEPS) * max(of_step, 0.0);
+            let most = choice.largest + f32(CRITERION_STEPS) * of_step;
             tool_intake[choice.intake] = min(tool_intake[choice.intake], most);
         }
         tool_reach[0] = 0u;

@@ -23,8 +23,8 @@ use glam::DVec3;
 ///
 /// What is in reach is looked at as often as criteria are; while there is nothing, nothing is taken in. Where nothing
 /// is left in reach, no more than the largest element's volume stays taken in, and what the steps from one look to the
-/// next take: the rest was no tissue. While the rate is 0 nothing goes. An element that is chosen is due at once:
-/// `element_removal` takes it in the same step.
+/// next take: the rest was no tissue. While the rate is 0 or below nothing goes, and nothing is given back. An element
+/// that is chosen is due at once: `element_removal` takes it in the same step.
 pub fn system() -> System {
     System::built_in(
         "tool_removal",
@@ -70,7 +70,8 @@ fn tool_removal(
         for (number, removal) in by_rate(removals) {
             let at = INTAKE_NUMBERS * number;
             let mut volume = intake.get(at);
-            let of_step = signals.values()[removal.rate][0] * clock.time_step;
+            // nothing is given back
+            let of_step = (signals.values()[removal.rate][0] * clock.time_step).max(0.0);
             if intake.get(at + 1) != 0.0 {
                 volume += of_step;
             }
@@ -97,7 +98,7 @@ fn tool_removal(
                 }
                 // nothing is left in reach: what is more was no tissue
                 if gone == count {
-                    volume = volume.min(removal.largest + steps as f64 * of_step.max(0.0));
+                    volume = volume.min(removal.largest + steps as f64 * of_step);
                 }
             }
             intake.set(at, volume);

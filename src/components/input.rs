@@ -103,7 +103,10 @@ impl Input {
         // pseudo-steps are no motion: there is no time in which something could change
         let rate = self.rate.filter(|_| clock.relaxation.is_none());
         let now = clock.time();
-        let here = state.course.value(now);
+        let Curve::Table(points) = &state.course else { return None };
+        // a second time before the same step: from where it was before the first
+        let began = points.iter().find(|&&(time, _)| time == now);
+        let here = began.map_or_else(|| state.course.value(now), |&(_, value)| value);
         let Curve::Table(points) = &mut state.course else { return None };
         points.truncate(points.partition_point(|&(time, _)| time < now));
         // loads act with means over windows that begin in the step before

@@ -51,7 +51,8 @@ pub struct Touch {
     pub sequence: u64,
     /// Steps taken until then.
     pub step: u64,
-    /// The number of the pose that the batch went to; 0 where none had come.
+    /// The number of the pose that the batch went to; 0 where none had come since the port was opened and since the
+    /// run last went back.
     pub answers: u64,
 }
 

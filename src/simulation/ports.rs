@@ -63,7 +63,7 @@ struct Port {
     state: PortState,
     /// Where nobody has opened it there is none.
     end: Option<EngineEnd>,
-    /// Touches told, and the number of the pose of the present batch.
+    /// Touches told through the end that is open, and the number of the pose of the present batch; both 0 at first.
     told: u64,
     answers: u64,
     /// When the present batch began.
@@ -114,6 +114,7 @@ impl Simulation {
         let port = self.ports.all.get_mut(name).ok_or(Error::Options(error))?;
         let (device, engine) = open();
         port.end = Some(engine);
+        (port.told, port.answers) = (0, 0);
         Ok(device)
     }
 
@@ -223,6 +224,8 @@ impl Simulation {
             let state = states.remove(name).or_else(|| first(&port.used.tool).map(PortState::at));
             let Some(state) = state else { continue };
             port.state = state;
+            // whatever pose it goes to came before
+            port.answers = 0;
             let path = &port.state.path;
             // before the first batch there is no way
             let path = if port.state.ends == 0 { &path[..1] } else { &path[..] };

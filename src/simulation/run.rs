@@ -37,23 +37,31 @@ impl Simulation {
         }
     }
 
-    /// Takes at most `most` steps, none of which goes beyond `time` (s), whatever becomes of their length.
+    /// Takes at most `most` steps, none of which goes beyond `time` (s), whatever becomes of their length. Where not
+    /// even one of the present length fits, nothing begins: what has been set may be set anew.
     ///
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn advance_short_of(&mut self, time: f64, most: u64) -> Result<(), Error> {
         self.settle()?;
         let end = self.step_count().saturating_add(most);
-        loop {
+        while self.steps_short_of(time, end) > 0 {
             self.begin_step_in_time()?;
-            let clock = *self.world.resource::<Clock>();
-            let whole = ((time - clock.since.1) / clock.time_step + WHOLE).floor().max(0.0) as u64;
-            let next = clock.since.0.saturating_add(whole).min(end).min(self.solver.next_check());
-            if next <= clock.step {
-                return Ok(());
+            // by now their length may be another one
+            let unchecked = self.solver.next_check().saturating_sub(self.step_count());
+            match self.steps_short_of(time, end).min(unchecked) {
+                0 => break,
+                steps => self.advance(steps)?,
             }
-            self.advance(next - clock.step)?;
         }
+        Ok(())
+    }
+
+    /// Steps of Δt as it is, none of which goes beyond `time` (s) or the step `end`.
+    fn steps_short_of(&self, time: f64, end: u64) -> u64 {
+        let clock = self.world.resource::<Clock>();
+        let whole = ((time - clock.since.1) / clock.time_step + WHOLE).floor().max(0.0) as u64;
+        clock.since.0.saturating_add(whole).min(end).saturating_sub(clock.step)
     }
 
     /// Steps that can be taken together until the clock shows at least `time` (s), as long as Δt stays as it is. Where

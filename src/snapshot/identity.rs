@@ -46,7 +46,7 @@ pub fn identity(scene: &Scene, world: &mut World) -> Identity {
         }
         add("systems", systems.finish());
     }
-    if !scene.tools.is_empty() || !scene.attachments.is_empty() {
+    if !scene.tools.is_empty() || !scene.contacts.is_empty() || !scene.attachments.is_empty() {
         let mut tools = XxHash64::default();
         tools.write_u64(of_text(&(&scene.tools, &scene.contacts)));
         if !scene.suction.is_empty() {

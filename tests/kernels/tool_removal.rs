@@ -56,7 +56,8 @@ fn tools(world: &mut World, volume: f64, rate: f64, burst: u32) {
 #[test]
 fn tools_choose_the_same_elements() {
     let effects = Effects { removal: true, ..Effects::default() };
-    // room for some twenty elements, for none, for all that may go at a time, and for all in reach; tools that are off
+    // room for some twenty elements, for none, for all that may go at a time, and for all in reach; tools that are off,
+    // by 0 and by a rate below
     for (step, volume, rate, burst, at_least, at_most) in [
         (9, 3e-6, 1e-6, 40, 8, 159),
         (9, 0.0, 1e-6, 40, 0, 0),
@@ -64,6 +65,7 @@ fn tools_choose_the_same_elements() {
         (10, 3e-6, 1e-6, 40, 0, 0),
         (9, 1.0, 1e-6, 1024, 80, 2000),
         (9, 1.0, 0.0, 40, 0, 0),
+        (9, 1.0, -1e3, 40, 0, 0),
     ] {
         let tools = |world: &mut World| tools(world, volume, rate, burst);
         let Some(mut pair) = run("tool_removal", &effects, step, tools) else { return };

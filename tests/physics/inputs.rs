@@ -74,6 +74,41 @@ fn a_load_acts_with_the_mean_over_its_step() {
     }
 }
 
+/// What is set anew before a step counts from where the input was, though steps were asked for meanwhile of which none
+/// fitted; and so it is recorded.
+#[test]
+fn an_input_set_anew_before_a_step_has_the_bits_of_its_last_value() {
+    for run in configurations() {
+        let acts = "loads: [Gravity(acceleration: (0, 0, 8), curve: Input(name: \"g\"))]";
+        let text = cube(acts, "integration: (step: 0.0009765625)");
+        let of = |before: &[f64]| {
+            let mut simulation = run.start(&text);
+            simulation.record_inputs();
+            simulation.advance(8).unwrap();
+            for &value in before {
+                simulation.set_input("g", value).unwrap();
+                let within = simulation.time() + 0.5 * simulation.time_step();
+                simulation.advance_short_of(within, 10).unwrap();
+                assert_eq!(simulation.step_count(), 8);
+            }
+            simulation.set_input("g", 0.25).unwrap();
+            simulation.advance(5).unwrap();
+            simulation
+        };
+        let (mut once, anew) = (of(&[]), of(&[1.0, -2.0]));
+        assert!(once.displacements("b").unwrap()[0].z > 1e-7, "{}: nothing rises", run.name);
+        let recording = anew.recorded_inputs().cloned().unwrap();
+        assert_eq!(recording.changes.len(), 1);
+        let mut again = run.start(&text);
+        again.replay_inputs(&recording).unwrap();
+        again.advance(13).unwrap();
+        let once = once.snapshot().unwrap();
+        for mut other in [anew, again] {
+            assert_eq!(other.snapshot().unwrap().differences(&once), Vec::<String>::new(), "{}", run.name);
+        }
+    }
+}
+
 #[test]
 fn a_prescribed_motion_follows_no_faster_than_the_rate() {
     for run in configurations() {

@@ -34,7 +34,7 @@ fn bits(simulation: &mut Simulation) -> Vec<u64> {
     let felt = simulation.tool("ball").unwrap();
     let u = simulation.displacements("b").unwrap();
     let numbers = u.iter().flat_map(|u| u.to_array()).chain(felt.force.to_array()).chain(felt.place.to_array());
-    numbers.chain([felt.work, felt.loss]).map(f64::to_bits).collect()
+    numbers.chain([felt.work.unwrap(), felt.loss.unwrap()]).map(f64::to_bits).collect()
 }
 
 #[test]

@@ -113,6 +113,40 @@ fn a_coupled_device_is_passive() {
     }
 }
 
+/// A device that opens the port anew begins to count anew, and no pose is answered that came before the run went back.
+#[test]
+fn touches_are_counted_from_the_opening_and_answer_no_pose_from_before_the_run_went_back() {
+    for run in cpu_and_long_gpu() {
+        let mut simulation = run.start(&above("speed: 0.3"));
+        let mut port = simulation.open_port("hand").unwrap();
+        // the last touch after two batches and more, each of a thousandth of a second
+        let after = |simulation: &mut Simulation, port: &mut ToolPort| {
+            let before = port.touch().sequence;
+            simulation.advance_to(simulation.time() + 3e-3).unwrap();
+            let touch = port.touch();
+            assert!(touch.sequence > before, "{}: {touch:?}", run.name);
+            touch
+        };
+        assert_eq!([0.0, 1e-3].map(|time| port.send(&hand(time))), [1, 2]);
+        simulation.advance_to(0.01).unwrap();
+        let touch = port.touch();
+        assert!(touch.answers == 2 && touch.sequence > 6, "{}: {touch:?}", run.name);
+        let snapshot = simulation.snapshot().unwrap();
+
+        let mut anew = simulation.open_port("hand").unwrap();
+        let touch = after(&mut simulation, &mut anew);
+        assert!(touch.answers == 0 && touch.sequence < 6, "{}: {touch:?}", run.name);
+        anew.send(&hand(2e-3));
+        assert_eq!(after(&mut simulation, &mut anew).answers, 1, "{}", run.name);
+        simulation.restore(&snapshot).unwrap();
+        assert_eq!(after(&mut simulation, &mut anew).answers, 0, "{}", run.name);
+        anew.send(&hand(3e-3));
+        assert_eq!(after(&mut simulation, &mut anew).answers, 2, "{}", run.name);
+        simulation.reset().unwrap();
+        assert_eq!(after(&mut simulation, &mut anew).answers, 0, "{}", run.name);
+    }
+}
+
 /// A thread a thousand times a second beside a busy engine: whatever it gets is whole and in order.
 #[test]
 fn a_device_in_its_own_thread_gets_whole_touches_in_order() {

@@ -179,6 +179,54 @@ fn foreign_snapshots_are_refused_with_the_reason() {
     }
 }
 
+/// Two blocks, one above the other, and how they meet.
+fn blocks(contacts: &str) -> String {
+    let block = |z: f64| {
+        format!(
+            "(mesh: Box(size: (0.02, 0.02, 0.02), cells: (2, 2, 2), elements: Hex8), material: \"m\",
+             translate: (0, 0, {z:?}))"
+        )
+    };
+    format!(
+        "(duration: 1, bodies: {{\"a\": {}, \"b\": {}}},
+         materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 1e4, poisson: 0.4))}},
+         contacts: [{contacts}])",
+        block(0.0),
+        block(0.021)
+    )
+}
+
+/// Where a scene has neither tools nor attachments, too.
+#[test]
+fn a_snapshot_of_other_contacts_between_bodies_is_refused() {
+    let run = cpu(Precision::F32);
+    for kind in ["Between(bodies: (\"a\", \"b\")", "Itself(body: \"a\""] {
+        let text = blocks(&format!("{kind}, friction: 0.5, thickness: 1e-4, sweeps: 2)"));
+        let mut simulation = run.start(&text);
+        simulation.advance(3).unwrap();
+        let kept = simulation.snapshot().unwrap();
+        let changes = [
+            ("friction: 0.5", "friction: 0.4"),
+            ("thickness: 1e-4", "thickness: 2e-4"),
+            ("sweeps: 2", "sweeps: 3"),
+            ("sweeps: 2", "law: Penalty(share: 0.1)"),
+        ];
+        let others = changes.map(|(from, to)| {
+            assert!(text.contains(from));
+            text.replace(from, to)
+        });
+        for other in others.into_iter().chain([blocks("")]) {
+            let mut simulation = run.start(&other);
+            let said = simulation.restore(&kept).unwrap_err().to_string();
+            let told = said.contains("of another simulation") && said.contains("tools, contacts and attachments");
+            assert!(told && simulation.step_count() == 0, "{other}: {said}");
+        }
+        let mut same = run.start(&text);
+        same.restore(&kept).unwrap();
+        assert_eq!(same.step_count(), 3);
+    }
+}
+
 fn bytes() -> Vec<u8> {
     let mut simulation = cpu(Precision::F32).start(&scene("Hex8", ""));
     simulation.advance(5).unwrap();

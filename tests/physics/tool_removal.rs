@@ -84,7 +84,7 @@ fn energies_balance_while_a_tool_takes_elements() {
             let (e, tip) = (simulation.energies().unwrap(), simulation.tool("tip").unwrap());
             let held = e.kinetic + e.strain + e.hourglass + e.removed;
             let balance = e.load_work.unwrap() + e.constraint_work.unwrap() - e.damping_loss.unwrap() - held;
-            let scale = tip.work.abs().max(held);
+            let scale = tip.work.unwrap().abs().max(held);
             near(&format!("{} at {time}: {e:?}", run.name), balance, 0.0, scale, 5e-3);
             assert!(e.removed > 0.0, "{}: {e:?}", run.name);
         }
@@ -186,6 +186,25 @@ fn what_was_tissue_is_not_lost_where_a_tool_leaves_it() {
         // .01 s of each visit, and up to ten steps of .2 ms until somebody looks
         let cells = gone(&mut simulation) / CELL;
         assert!((2.9..5.1).contains(&cells), "{}: {cells} cells", run.name);
+    }
+}
+
+/// A rate below 0 is none: what it would have given back is not taken in again before the next cell goes.
+#[test]
+fn a_rate_below_zero_gives_nothing_back() {
+    let path = "(t: 0, at: (0.02, 0.005, 0.01))";
+    for run in cpu_and_long_gpu() {
+        let of = |off: f64| {
+            let curve = format!("Table([(0, {off:?}), (0.05, {off:?}), (0.0501, 0), (0.1, 0), (0.1001, 1)])");
+            let takes = format!("reach: 5e-3, rate: 3e-6, curve: {curve}");
+            let mut simulation = run.start(&passed(path, &takes));
+            simulation.advance_to(0.14).unwrap();
+            (gone(&mut simulation) / CELL, bits_of(&mut simulation))
+        };
+        let ((cells, bits), (others, other_bits)) = (of(-1.0), of(0.0));
+        // .04 s, less what is no cell yet and ten steps of .2 ms until somebody looks
+        assert!((6.0..7.7).contains(&cells) && cells == others, "{}: {cells} and {others} cells", run.name);
+        assert!(bits == other_bits, "{}: other bits", run.name);
     }
 }
 

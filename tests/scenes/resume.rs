@@ -5,6 +5,7 @@
 use sinew::backend::gpu::gpu_or_reason;
 use sinew::components::Precision;
 use sinew::{BackendChoice, Options, SceneFile, Simulation, Snapshot};
+use std::path::Path;
 
 /// Snapshots of a scene, its end included.
 const SNAPSHOTS: u64 = 6;
@@ -101,6 +102,35 @@ fn in_folder(folder: &str, sets: &[&str]) -> Vec<(String, SceneFile)> {
             (name, SceneFile::load(&path, &sets).unwrap_or_else(|wrong| panic!("{}", wrong.render(false))))
         })
         .collect()
+}
+
+/// Who goes on from a state observes it once more, and so may any program.
+#[test]
+fn a_state_that_is_observed_again_is_checked_once() {
+    let text = "(duration: 1, bodies: {\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2)), material: \"m\")},
+        materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 20)},
+        constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))], loads: [Gravity(acceleration: (0, 0, -9.81))],
+        guards: (every: 10, off: [Energy]), integration: (step: 5e-4))";
+    let scene = SceneFile::from_text("observed", text, Path::new("."), &[])
+        .unwrap_or_else(|wrong| panic!("{}", wrong.render(false)));
+    for options in options() {
+        let start = || Simulation::new(&scene, &options).unwrap();
+        let mut whole = start();
+        whole.advance(20).unwrap();
+        let checked = whole.guards();
+        assert_eq!(checked.checks, 2, "{:?}", options.backend);
+        let kept = Snapshot::from_bytes(&whole.snapshot().unwrap().to_bytes().unwrap()).unwrap();
+        let mut other = start();
+        other.restore(&kept).unwrap();
+        for simulation in [&mut whole, &mut other] {
+            for _ in 0..2 {
+                simulation.observe().unwrap();
+                assert_eq!(simulation.guards(), checked, "{:?}", options.backend);
+            }
+            simulation.advance(10).unwrap();
+            assert_eq!(simulation.guards().checks, 3, "{:?}", options.backend);
+        }
+    }
 }
 
 #[test]

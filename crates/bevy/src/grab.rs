@@ -4,9 +4,13 @@ use crate::simulation::*;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_transform::components::GlobalTransform;
-use sinew::{GrabId, Grip, Pick};
+use sinew::{Error, GrabId, Grip, Pick};
 
-/// A hand: spawn it to grab a point, change its target to pull, despawn it to let go.
+/// Why a hand holds nothing any more.
+const ANEW: &str = "the scene has started anew since this was grabbed: pick and grab again";
+
+/// A hand: spawn it to grab a point, change its target to pull, despawn it to let go. Where its scene starts anew it
+/// holds nothing any more, and is despawned with a [`Refused`].
 ///
 /// ```ignore
 /// if let Some(pick) = simulation.pick_from(ray, place)? {
@@ -39,6 +43,8 @@ impl SoftGrab {
 #[derive(Component)]
 pub(crate) struct Held {
     id: GrabId,
+    /// The run that has it: in another one the number may be that of another hand.
+    run: (u64, u64),
     scene: Entity,
     target: Vec3,
 }
@@ -54,13 +60,14 @@ pub(crate) fn hold(
         let Ok((mut simulation, place)) = scenes.get_mut(grab.scene) else { continue };
         let target = in_scene(place, grab.target);
         let moved = match held {
+            Some(held) if held.run != simulation.run => Err(Error::Options(ANEW.into())),
             Some(held) if held.target == grab.target => Ok(()),
             Some(mut held) => {
                 held.target = grab.target;
                 simulation.move_grab(held.id, target)
             }
             None => simulation.grab(&grab.pick, &grab.grip).and_then(|id| {
-                commands.entity(hand).insert(Held { id, scene: grab.scene, target: grab.target });
+                commands.entity(hand).insert(Held { id, run: simulation.run, scene: grab.scene, target: grab.target });
                 simulation.move_grab(id, target)
             }),
         };
@@ -79,7 +86,9 @@ pub(crate) fn feel(
 ) {
     for (mut grab, held) in &mut hands {
         let Ok((mut simulation, place)) = scenes.get_mut(held.scene) else { continue };
-        if let Ok(force) = simulation.grab_force(held.id) {
+        if held.run == simulation.run
+            && let Ok(force) = simulation.grab_force(held.id)
+        {
             grab.bypass_change_detection().force = place.rotation() * force.as_vec3();
         }
     }
@@ -88,7 +97,9 @@ pub(crate) fn feel(
 /// Lets go when a hand goes.
 pub(crate) fn let_go(gone: On<Remove<Held>>, hands: Query<&Held>, mut scenes: Query<&mut SoftSimulation>) {
     let Ok(held) = hands.get(gone.entity) else { return };
-    if let Ok(mut simulation) = scenes.get_mut(held.scene) {
+    if let Ok(mut simulation) = scenes.get_mut(held.scene)
+        && held.run == simulation.run
+    {
         // what went back to before it was grabbed does not hold it any more
         let _ = simulation.release(held.id);
     }

@@ -17,6 +17,7 @@ pub(crate) fn prepare(
     mut commands: Commands,
     mut events: MessageReader<AssetEvent<SceneText>>,
     mut tried: Local<BTreeMap<Entity, AssetId<SceneText>>>,
+    mut made: Local<u64>,
     texts: Res<Assets<SceneText>>,
     mut meshes: ResMut<Assets<Mesh>>,
     scenes: Query<Scene>,
@@ -57,7 +58,8 @@ pub(crate) fn prepare(
                         commands.spawn((SoftBody { name }, shape, handle, ChildOf(entity)));
                     }
                 }
-                commands.entity(entity).insert(SoftSimulation::new(simulation));
+                *made += 1;
+                commands.entity(entity).insert(SoftSimulation::new(simulation, *made));
             }
             Err(error) => {
                 refused.write(Refused { scene: entity, error: error.to_string() });

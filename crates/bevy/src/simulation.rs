@@ -48,11 +48,14 @@ pub struct SoftSimulation {
     /// Whether inputs have not been set yet.
     pub(crate) fresh: bool,
     pub(crate) broken: bool,
+    /// Which run it is: how many simulations the app had made by then, and how often this one has begun anew since.
+    pub(crate) run: (u64, u64),
 }
 
 impl SoftSimulation {
-    pub(crate) fn new(simulation: Simulation) -> Self {
-        Self { simulation, ahead: 0.0, fresh: true, broken: false }
+    /// The simulation that an app has made as its first, second ...
+    pub(crate) fn new(simulation: Simulation, number: u64) -> Self {
+        Self { simulation, ahead: 0.0, fresh: true, broken: false, run: (number, 0) }
     }
 
     /// Whether it broke down: it stands still until [`restart`](Self::restart).
@@ -60,13 +63,14 @@ impl SoftSimulation {
         self.broken
     }
 
-    /// Goes back to the state before the first step, and on from there.
+    /// Goes back to the state before the first step, and on from there. Hands let go.
     ///
     /// # Errors
     /// As [`Simulation::reset`].
     pub fn restart(&mut self) -> Result<(), Error> {
         self.simulation.reset()?;
         (self.ahead, self.fresh, self.broken) = (0.0, true, false);
+        self.run.1 += 1;
         Ok(())
     }
 

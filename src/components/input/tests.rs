@@ -23,6 +23,24 @@ fn goes_where_it_is_set_no_faster_than_its_rate() {
 }
 
 #[test]
+fn a_second_time_before_the_same_step_it_goes_from_where_it_was_before_the_first() {
+    for rate in [None, Some(2.0)] {
+        let [mut once, mut twice] = [Input::new("tool", 0.0, rate), Input::new("tool", 0.0, rate)];
+        for input in [&mut once, &mut twice] {
+            set(input, 0.5, 2);
+        }
+        set(&mut twice, 4.0, 4);
+        for input in [&mut once, &mut twice] {
+            assert_eq!(set(input, 0.25, 4), Some(Change::Moves));
+        }
+        assert_eq!(twice.course(), once.course());
+        // of half a window of 0.5 and half of what comes
+        let mean = twice.course().mean((0.875, 1.125));
+        assert_eq!(mean, if rate.is_none() { 0.375 } else { 0.4375 });
+    }
+}
+
+#[test]
 fn a_rate_too_slow_for_any_clock_leaves_numbers() {
     let mut input = Input::new("tool", 0.0, Some(1e-320));
     set(&mut input, f64::from(f32::MAX), 4);

@@ -52,3 +52,36 @@ fn what_cannot_be_grabbed_is_refused() {
     assert!(refused.len() == 1 && refused[0].error.contains("grabs: true"), "{refused:?}");
     assert!(app.world().get_entity(hand).is_err());
 }
+
+/// The numbers of grabs begin again with each simulation: a hand of the one before must not steer that of another.
+#[test]
+fn where_a_scene_starts_anew_hands_of_before_are_gone_and_others_stay() {
+    let mut app = app();
+    let scene = spawn(&mut app, BAR);
+    update(&mut app, 3);
+    let ray = Ray3d { origin: Vec3::new(0.05, 0.01, 1.0), direction: Dir3::NEG_Z };
+    let pick = simulation_mut(&mut app, scene).pick_from(ray, &GlobalTransform::IDENTITY).unwrap().unwrap();
+    let place = pick.point.as_vec3();
+    let grabs =
+        |app: &mut App, by: f32| app.world_mut().spawn(SoftGrab::new(scene, pick.clone(), place + by * Vec3::Z)).id();
+    let mut before = grabs(&mut app, 0.001);
+    update(&mut app, 2);
+    let anew: [fn(&mut App, Entity); 2] = [
+        |app: &mut App, scene: Entity| {
+            app.world_mut().get_mut::<SoftOptions>(scene).unwrap().sets = vec!["duration=5".into()];
+        },
+        |app: &mut App, scene: Entity| simulation_mut(app, scene).restart().unwrap(),
+    ];
+    for (by, start) in [0.002, 0.003].into_iter().zip(anew) {
+        let hand = grabs(&mut app, by);
+        app.world_mut().get_mut::<SoftGrab>(before).unwrap().target = place + 0.1 * Vec3::Z;
+        start(&mut app, scene);
+        update(&mut app, 2);
+        let refused = messages::<Refused>(&mut app);
+        assert!(refused.len() == 1 && refused[0].error.contains("started anew"), "{refused:?}");
+        assert!(app.world().get_entity(before).is_err() && app.world().get_entity(hand).is_ok());
+        let held: Vec<Vec3> = simulation(&app, scene).grabs().map(|(_, grab)| grab.target.as_vec3()).collect();
+        assert!(held.len() == 1 && held[0].distance(place + by * Vec3::Z) < 1e-6, "{held:?}");
+        before = hand;
+    }
+}
