@@ -7,7 +7,6 @@ use crate::backend::cpu::Cpu;
 use crate::components::*;
 use crate::elements::Stiffness;
 use crate::math::{radians, turned};
-use crate::mesh::Triangles;
 use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Contact, ContactLaw, Curve, Scene, Select, Tool, ToolMesh, ToolPlace};
@@ -183,9 +182,7 @@ pub(super) fn geometries(
 
 /// The distances of a tool that is a file of triangles.
 fn grid(scene: &SceneFile, mesh: &ToolMesh, world: &World) -> Result<DistanceGrid, String> {
-    let bytes = scene.bytes(&mesh.path, u64::MAX).map_err(|error| format!("{}: {error}", mesh.path))?;
-    let beside = |name: &str| scene.bytes_beside(&mesh.path, name);
-    let mut surface = Triangles::from_bytes_beside(&mesh.path, &bytes, &beside).map_err(|error| error.to_string())?;
+    let mut surface = scene.surface(&mesh.path)?;
     surface.points.iter_mut().for_each(|point| *point *= mesh.scale);
     let spacing = mesh.spacing.unwrap_or_else(|| DistanceGrid::usual_spacing(&surface));
     let make = || DistanceGrid::new(&surface, spacing);

@@ -58,9 +58,7 @@ fn fits(name: &str, (skin, body): (&[DVec3], &[DVec3]), diagnostics: &mut Diagno
 
 /// The surface where the body's mesh is (m).
 fn surface(assembly: &Assembly<'_>, body: &Body, skin: &SkinFile) -> Result<Triangles, String> {
-    let bytes = assembly.scene.bytes(&skin.file, u64::MAX).map_err(|error| format!("{}: {error}", skin.file))?;
-    let beside = |name: &str| assembly.scene.bytes_beside(&skin.file, name);
-    let mut surface = Triangles::from_bytes_beside(&skin.file, &bytes, &beside).map_err(|error| error.to_string())?;
+    let mut surface = assembly.scene.surface(&skin.file)?;
     let points = std::mem::take(&mut surface.points);
     let mut placed = Mesh { points, ..Mesh::default() };
     placed.points.iter_mut().for_each(|point| *point *= skin.scale);

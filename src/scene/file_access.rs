@@ -75,13 +75,10 @@ impl SceneFile {
         self.file_access().bytes(name, most)
     }
 
-    /// What a file holds that another file of the scene names, its path relative to that one's folder.
-    ///
-    /// # Errors
-    /// In words, as [`Self::bytes`].
-    pub fn bytes_beside(&self, file: &str, name: &str) -> Result<Vec<u8>, String> {
-        let path = Path::new(file).with_file_name(name);
-        let bytes = self.bytes(&path.to_string_lossy(), u64::MAX).map_err(|error| error.to_string())?;
+    /// What a file holds that another file of the scene names, its path relative to that one's folder; what is wrong in
+    /// words.
+    pub(super) fn bytes_beside(&self, file: &str, name: &str) -> Result<Vec<u8>, String> {
+        let bytes = self.bytes(&beside(file, name), u64::MAX).map_err(|error| error.to_string())?;
         Ok(bytes.into_owned())
     }
 
@@ -148,6 +145,11 @@ impl<'a> FileAccess<'a> {
             }
         })
     }
+}
+
+/// What the scene would call a file that another one of its files names.
+pub(super) fn beside(file: &str, name: &str) -> String {
+    Path::new(file).with_file_name(name).to_string_lossy().into_owned()
 }
 
 /// A file in memory, by its name or another that means the same: `tools/../lens.msh`.

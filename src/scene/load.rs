@@ -8,7 +8,7 @@ use super::partial::wrong_values;
 use super::parts::{self, Problem, Together};
 use super::schema::Scene;
 use super::source::Source;
-use super::syntax::{Kind, Node, Path as Way, Segment, Tree};
+use super::syntax::{Kind, Node, Path as Way, Segment, Span, Tree};
 use crate::mesh::Mesh;
 use glam::DVec3;
 use ron::extensions::Extensions;
@@ -173,14 +173,17 @@ impl SceneFile {
         mistakes.extend(written.faults.iter().cloned().map(Diagnostic::from));
         let (partial, wrong_words) = check::<Scene>(&written.root, source.text());
         mistakes.extend(wrong_words);
-        let tell = |problem: &Problem| {
-            let at = match problem.path.find(&written.root) {
-                Ok(node) => node.mark(),
-                Err(_) => problem.path.span(&written.root),
-            };
+        let tell = |problem: &Problem, known: &[Diagnostic]| {
+            let (at, value) = parts::find(&written.root, &problem.path);
+            let is_in = |value: &Span, wrong: &Span| value.start <= wrong.start && wrong.end <= value.end;
+            let mut wrong = known.iter().filter_map(|mistake| mistake.at.as_ref());
+            // of what could not be read a stand-in is here, of which there is nothing to be told
+            if value.is_some_and(|value| wrong.any(|wrong| is_in(&value, wrong))) {
+                return None;
+            }
             let mut mistake = Diagnostic::error(at, problem.message.clone());
             mistake.note(problem.note.clone());
-            mistake
+            Some(mistake)
         };
         let (source, tree) = (Arc::new(source), Arc::new(view.merged()));
         let mut diagnostics = Diagnostics::new(Arc::clone(&source), Arc::clone(&tree));
@@ -198,7 +201,9 @@ impl SceneFile {
         // without the parts that were not read, what names something of them is not wrong
         if let Some(mut scene) = partial.filter(|_| is_whole) {
             let is_sound = mistakes.is_empty();
-            mistakes.extend(parts::flatten(&mut scene).iter().map(tell));
+            let problems = parts::flatten(&mut scene);
+            let told: Vec<Diagnostic> = problems.iter().filter_map(|problem| tell(problem, &mistakes)).collect();
+            mistakes.extend(told);
             if mistakes.is_empty() {
                 return Ok(file(scene));
             }

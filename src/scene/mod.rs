@@ -13,6 +13,7 @@ pub mod limits;
 #[doc(hidden)]
 pub mod load;
 mod load_parts;
+mod named_files;
 mod partial;
 mod parts;
 // its words are described in docs/scene.md; they grow with every version
@@ -40,6 +41,8 @@ pub use load::SceneFile;
 
 #[doc(hidden)]
 pub use file_access::{FileKind, Outside};
+#[doc(hidden)]
+pub use named_files::NamedFile;
 #[doc(hidden)]
 pub use suggest::{choice, list, nearest};
 #[doc(hidden)]

@@ -15,6 +15,7 @@ mod mutations;
 mod outside;
 mod own_systems;
 mod parts;
+mod parts_of_parts;
 mod per_copy;
 mod set;
 mod several;

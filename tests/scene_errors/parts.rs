@@ -5,7 +5,7 @@ use sinew::scene::schema::{Axis, Constraint, Contact, MeshSource, Probe, Quantit
 use sinew::scene::{Allowed, Diagnostics, SceneFile, validate};
 use std::collections::BTreeMap;
 
-const WHOLE: &str = r#"(
+pub const WHOLE: &str = r#"(
     duration: 0.1,
     parts: {
         "eye": (scene: "eye.ron"),
@@ -13,7 +13,7 @@ const WHOLE: &str = r#"(
     },
     contacts: [Tool(tool: "tip.needle", body: "eye.lens")],
 )"#;
-const EYE: &str = r#"// an eye
+pub const EYE: &str = r#"// an eye
 (
     title: "An eye",
     bodies: {"lens": (mesh: Box(size: (1, 1, 1), cells: (2, 2, 2)), material: "soft")},
@@ -32,19 +32,19 @@ fn files() -> BTreeMap<String, Vec<u8>> {
 }
 
 /// The files of the parts, some of them others or more.
-fn with(others: &[(&str, &str)]) -> BTreeMap<String, Vec<u8>> {
+pub fn with(others: &[(&str, &str)]) -> BTreeMap<String, Vec<u8>> {
     let all = [("eye.ron", EYE), ("tools/tip.ron", TIP)];
     let all = all.iter().chain(others).map(|(name, text)| (name.to_string(), text.as_bytes().to_vec()));
     all.collect()
 }
 
-fn read(whole: &str, files: BTreeMap<String, Vec<u8>>, sets: &[&str]) -> Result<SceneFile, Diagnostics> {
+pub fn read(whole: &str, files: BTreeMap<String, Vec<u8>>, sets: &[&str]) -> Result<SceneFile, Diagnostics> {
     let sets: Vec<String> = sets.iter().map(|set| set.to_string()).collect();
     SceneFile::from_memory("whole.ron", whole, files, &sets)
 }
 
 /// All complaints, each in a line: with label and notes behind bars.
-fn brief(whole: &str, files: BTreeMap<String, Vec<u8>>, sets: &[&str]) -> String {
+pub fn brief(whole: &str, files: BTreeMap<String, Vec<u8>>, sets: &[&str]) -> String {
     let found = read(whole, files, sets).map_or_else(
         |wrong| wrong,
         |scene| {
@@ -293,7 +293,7 @@ fn circles_and_towers_of_parts_are_refused() {
     assert!(told.contains("at most 8 within each other are allowed"), "{told}");
 }
 
-fn files_of(files: &[(&str, &str)]) -> BTreeMap<String, Vec<u8>> {
+pub fn files_of(files: &[(&str, &str)]) -> BTreeMap<String, Vec<u8>> {
     files.iter().map(|(name, text)| (name.to_string(), text.as_bytes().to_vec())).collect()
 }
 

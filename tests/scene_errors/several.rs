@@ -27,7 +27,7 @@ const EXPECTED: &str = r#"error: the field `duration` is missing in the scene
 1 │ (
   │ ^ Scene needs `duration`
   │
-  = duration: Simulated time (s); the time whose loads and motions a static analysis takes.
+  = duration: Simulated time (s); the time whose loads and motions a static analysis takes. A file without it may be a part of a scene: see `parts`.
 
 error: `fields_every` must be a number
   ┌─ --set:1:21

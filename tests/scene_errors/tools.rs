@@ -27,6 +27,20 @@ fn a_good_tool_has_no_complaints() {
     assert_eq!(told(ROD, TOUCH, ""), "");
 }
 
+/// Pseudo-steps are no way that something slides along.
+#[test]
+fn a_static_analysis_has_no_lengths_of_slides() {
+    let asks =
+        "probes: {\"way\": (what: ContactSlip, on: Set(\"z1\"))}, output: (fields: [Displacement, ContactSlip]),";
+    assert_eq!(told(ROD, TOUCH, asks), "");
+    let found = told(ROD, TOUCH, &format!("analysis: Static(), {asks}"));
+    let errors: Vec<&str> = found.lines().filter(|line| line.starts_with("3: error: ")).collect();
+    let is_told = |line: &&str| line.contains("a static analysis has no `ContactSlip` | it is the length");
+    assert!(errors.len() == 2 && errors.iter().all(is_told), "{found}");
+    let others = asks.replace("ContactSlip", "ContactGap");
+    assert!(!told(ROD, TOUCH, &format!("analysis: Static(), {others}")).contains("error"), "{others}");
+}
+
 #[test]
 fn what_is_wrong_with_a_tool_is_told_with_what_is_allowed() {
     let cases = [

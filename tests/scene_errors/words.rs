@@ -66,7 +66,7 @@ fn words_that_do_not_fit_are_told_with_those_that_do() {
         (
             "duration: 0.5,",
             "",
-            r"1:1: error: the field `duration` is missing in the scene | Scene needs `duration` | duration: Simulated time (s); the time whose loads and motions a static analysis takes.",
+            r"1:1: error: the field `duration` is missing in the scene | Scene needs `duration` | duration: Simulated time (s); the time whose loads and motions a static analysis takes. A file without it may be a part of a scene: see `parts`.",
         ),
         (
             "duration: 0.5,",

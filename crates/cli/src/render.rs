@@ -7,7 +7,7 @@ use super::run::{self, PICTURES, SCENE};
 use super::terminal;
 use super::{Outcome, progress};
 use sinew::output::Lock;
-use sinew::scene::schema::{MeshSource, Picture, Scene};
+use sinew::scene::schema::{Picture, Scene};
 use sinew::scene::validate_picture;
 use sinew::{Options as RunOptions, SceneFile};
 use sinew_pictures::render::{RenderOptions, Tools, draw_with_progress};
@@ -132,14 +132,10 @@ fn why_run(scene: &SceneFile, folder: &Path) -> Option<String> {
         return Some(format!("{} was written of another, or with other values", folder.display()));
     }
     let written = changed(&drawn);
-    let meshes = scene.scene.bodies.values().filter_map(|body| match &body.mesh {
-        MeshSource::File { path, .. } => scene.file(path).ok(),
-        _ => None,
-    });
-    let tools = scene.scene.tools.values().filter_map(|tool| scene.file(&tool.mesh.as_ref()?.path).ok());
-    let skins = scene.scene.bodies.values().filter_map(|body| scene.file(&body.skin.as_ref()?.file).ok());
-    let newer = meshes.into_iter().chain(tools).chain(skins).find(|mesh| changed(mesh) > written);
-    newer.map(|mesh| format!("{} has changed since {} was written", mesh.display(), folder.display()))
+    let named: Vec<String> = scene.named_files().iter().flat_map(|file| file.names()).collect();
+    let mut files = named.iter().filter_map(|name| scene.file(name).ok());
+    let newer = files.find(|file| changed(file) > written);
+    newer.map(|file| format!("{} has changed since {} was written", file.display(), folder.display()))
 }
 
 fn draw(folder: &Path, options: &RenderOptions) -> Outcome {

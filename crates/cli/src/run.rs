@@ -9,7 +9,7 @@ use super::{Outcome, check, interrupt, report};
 use sinew::output::{Folder, OutputError, replace, summary};
 use sinew::scene::schema::InitialState;
 use sinew::{BackendChoice, Error, Options, SceneFile, Simulation, Snapshot, Summary};
-use sinew_pictures::render::copy_of;
+use sinew_pictures::render::keep;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -110,7 +110,7 @@ pub fn run(
     }
     let copy = folder.claim(SCENE)?;
     replace(&copy, |file| file.write_all(scene.text().as_bytes()).map_err(OutputError::system("write", &copy)))?;
-    keep_tools(scene, &mut folder)?;
+    keep(scene, &mut folder)?;
     simulation.write_into(&mut folder)?;
     if terminal::is_verbose() {
         terminal::detail(&check::details(&mut simulation, path)?);
@@ -120,18 +120,6 @@ pub fn run(
     let finished = finish(&mut simulation, &mut folder, ended);
     interrupt::rest();
     finished
-}
-
-/// Copies files of tools into the output folder: pictures are drawn from it.
-fn keep_tools(scene: &SceneFile, folder: &mut Folder) -> Outcome {
-    for (name, tool) in &scene.scene.tools {
-        let Some(mesh) = &tool.mesh else { continue };
-        let Ok(bytes) = scene.bytes(&mesh.path, u64::MAX) else { continue };
-        // a name that no file can have is drawn from the scene's file, where that is found
-        let Ok(copy) = folder.claim(&copy_of(name, mesh)) else { continue };
-        replace(&copy, |file| file.write_all(&bytes).map_err(OutputError::system("write", &copy)))?;
-    }
-    Ok(())
 }
 
 /// Says what stays as it is because there is no program that would set it.

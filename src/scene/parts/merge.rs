@@ -1,6 +1,6 @@
 //! The tree of a scene's text with what parts hold beside what the scene itself holds.
 
-use crate::scene::syntax::{Field, Kind, MapEntry, Node, Word};
+use crate::scene::syntax::{Field, Kind, MapEntry, Node, Path, Segment, Span, Word};
 
 /// Fields of a part that are names with what belongs to them.
 const MAPS: [&str; 4] = ["bodies", "materials", "tools", "probes"];
@@ -35,6 +35,32 @@ pub fn merged(root: &Node) -> Option<Node> {
     }
     fields.push(Field { name: parts.name.clone(), value: outer });
     Some(Node { kind: Kind::Fields(fields), ..root.clone() })
+}
+
+/// What to mark where something is said of the value at a path, and the value, if it is there. The path leads into
+/// parts as they are written, `parts.eye.content`, and from the last of them on goes by the names that this knows: what
+/// parts of it hold stands beside what it holds itself.
+pub fn find(root: &Node, path: &Path) -> (Span, Option<Span>) {
+    let is = |segment: &Segment, word: &str| matches!(segment, Segment::Name(name) if name == word);
+    let (mut node, mut way) = (root, path.0.as_slice());
+    while let [parts, part, content, rest @ ..] = way
+        && is(parts, "parts")
+        && is(content, "content")
+        && let Some(held) = [parts, part, content].into_iter().try_fold(node, |node, segment| node.child(segment))
+    {
+        (node, way) = (held.inner(), rest);
+    }
+    let way = Path(way.to_vec());
+    let marked = |found: &Node| (found.mark(), Some(found.span.clone()));
+    // what a part holds itself comes first
+    if let Ok(found) = way.find(node) {
+        return marked(found);
+    }
+    let whole = merged(node).unwrap_or_else(|| node.clone());
+    match way.find(&whole) {
+        Ok(found) => marked(found),
+        Err(_) => (way.span(&whole), None),
+    }
 }
 
 fn name_and_value(entry: &MapEntry) -> Option<(&str, &Node)> {

@@ -7,9 +7,10 @@
 
 mod flatten;
 mod merge;
+mod naming;
 mod placement;
 mod read;
 
 pub(super) use flatten::{Problem, flatten};
-pub(super) use merge::merged;
+pub(super) use merge::{find, merged};
 pub(super) use read::{Together, read};

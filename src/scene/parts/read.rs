@@ -3,6 +3,7 @@
 use crate::scene::diagnostic::{Diagnostic, TextFile};
 use crate::scene::file_access::{FileAccess, FileKind, Outside, shortest};
 use crate::scene::limits::{PART_DEPTH, PARTS, TEXT_BYTES};
+use crate::scene::named_files::{named_in, values};
 use crate::scene::set::{self, View};
 use crate::scene::source::{Origin, Source, Stretches};
 use crate::scene::suggest::choice;
@@ -284,16 +285,6 @@ fn overrides(source: &Source, set: &Node) -> Vec<Override> {
     values.collect()
 }
 
-/// Fields that name files; a star stands for any name.
-const PATHS: [&[&str]; 6] = [
-    &["bodies", "*", "mesh", "path"],
-    &["bodies", "*", "rest_shape"],
-    &["bodies", "*", "skin", "file"],
-    &["bodies", "*", "skin", "image"],
-    &["materials", "*", "law", "file"],
-    &["tools", "*", "mesh", "path"],
-];
-
 /// The text of a part with a folder ahead of the paths in it.
 fn ahead_of_paths(text: &Stretches, folder: &str) -> Stretches {
     let mut source = Source::made_of(text);
@@ -314,37 +305,11 @@ fn ahead_of_paths(text: &Stretches, folder: &str) -> Stretches {
 
 /// Where a part and its parts name files.
 fn named_files(content: &Node, found: &mut Vec<Span>) {
-    for path in PATHS {
-        leaves(content, path, found);
-    }
+    let named = named_in(content).into_iter().filter(|(_, name, _)| !is_absolute(name));
+    found.extend(named.map(|(_, _, node)| node.span.clone()));
     let mut parts = Vec::new();
-    nodes(content, &["parts", "*", "content"], &mut parts);
-    parts.into_iter().for_each(|part| named_files(part, found));
-}
-
-fn leaves(node: &Node, path: &[&str], found: &mut Vec<Span>) {
-    let mut nodes_found = Vec::new();
-    nodes(node, path, &mut nodes_found);
-    for node in nodes_found {
-        if let Kind::Text(name) = &node.inner().kind
-            && !is_absolute(name)
-            && !name.is_empty()
-        {
-            found.push(node.inner().span.clone());
-        }
-    }
-}
-
-/// All values that a path leads to.
-fn nodes<'a>(node: &'a Node, path: &[&str], found: &mut Vec<&'a Node>) {
-    match (path.split_first(), &node.inner().kind) {
-        (None, _) => found.push(node),
-        (Some((&"*", rest)), Kind::Map(entries)) => entries.iter().for_each(|entry| nodes(&entry.value, rest, found)),
-        (Some((name, rest)), Kind::Fields(fields)) => {
-            field(fields, name).into_iter().for_each(|field| nodes(&field.value, rest, found));
-        }
-        _ => {}
-    }
+    values(content, &["parts", "*", "content"], Path::default(), &mut parts);
+    parts.into_iter().for_each(|(_, part)| named_files(part, found));
 }
 
 fn is_absolute(name: &str) -> bool {

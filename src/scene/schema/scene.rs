@@ -15,7 +15,8 @@ pub struct Scene {
     /// What the scene shows, in a few words.
     #[serde(default)]
     pub title: String,
-    /// Simulated time (s); the time whose loads and motions a static analysis takes.
+    /// Simulated time (s); the time whose loads and motions a static analysis takes. A file without it may be
+    /// a part of a scene: see `parts`.
     pub duration: f64,
     /// Motion over time, or rest under what acts at the end.
     #[serde(default)]

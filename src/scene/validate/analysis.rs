@@ -3,8 +3,8 @@
 use super::{Validator, scene, show};
 use crate::scene::limits::{PATH_POINTS, PSEUDO_STEPS};
 use crate::scene::schema::{
-    Analysis, ArcLength, Constraint, Contact, EquilibriumSearch, InitialState, Inversion, Load, Quantity, Scene,
-    SearchMethod, laws_that_recover,
+    Analysis, ArcLength, Constraint, Contact, EquilibriumSearch, InitialState, Inversion, Load, OutputField, Quantity,
+    Scene, SearchMethod, laws_that_recover,
 };
 use crate::scene::syntax::Path;
 use glam::DVec3;
@@ -41,6 +41,7 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
                 .note("leave `arc` out: what touches changes all at once along a path");
         }
     }
+    slips(scene_, validator);
     meaningless(scene_, validator);
     held(scene_, &path, validator);
 }
@@ -165,6 +166,21 @@ fn held(scene_: &Scene, path: &Path, validator: &mut Validator) {
                 .warn_at(path, format!("nothing holds the body {name:?}: it is at rest only where its loads balance"))
                 .note("add `Fixed(...)` or `Prescribed(...)` under `constraints`");
         }
+    }
+}
+
+/// How far nodes have slid is the length of a way.
+fn slips(scene_: &Scene, validator: &mut Validator) {
+    let fields = scene_.output.fields.iter().flatten().enumerate();
+    let fields = fields.filter(|(_, field)| **field == OutputField::ContactSlip);
+    let fields = fields.map(|(number, _)| scene("output").name("fields").index(number));
+    let probes = scene_.probes.iter().filter(|(_, probe)| probe.what == Quantity::ContactSlip);
+    for path in fields.chain(probes.map(|(name, _)| scene("probes").name(name).name("what"))) {
+        validator
+            .out
+            .error_at(path, "a static analysis has no `ContactSlip`")
+            .note("it is the length that nodes slide, and pseudo-steps are no way that a body takes")
+            .note("leave it out, or use `analysis: Transient`");
     }
 }
 

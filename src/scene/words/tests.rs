@@ -4,7 +4,10 @@ use super::*;
 fn fields_of_structs_and_variants_have_a_meaning() {
     assert_eq!(
         meaning("Scene", "duration").as_deref(),
-        Some("Simulated time (s); the time whose loads and motions a static analysis takes.")
+        Some(
+            "Simulated time (s); the time whose loads and motions a static analysis takes. A file without it may be a \
+             part of a scene: see `parts`."
+        )
     );
     assert_eq!(meaning("Young", "poisson").as_deref(), Some("Poisson's ratio, below 1/2."));
     assert_eq!(meaning("Pressure", "on").as_deref(), Some("Which faces."));

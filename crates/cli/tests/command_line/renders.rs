@@ -6,6 +6,7 @@ use sinew_pictures::render::{RenderOptions, draw};
 use std::fs;
 use std::io::BufReader;
 use std::path::Path;
+use std::time::{Duration, SystemTime};
 
 #[test]
 #[ignore = "long"]
@@ -28,6 +29,29 @@ fn a_scene_is_run_only_when_its_output_is_missing_or_older() {
     fs::write(place.path("block.ron"), text.replace("damping: 5", "damping: 6")).unwrap();
     let again = "running block.ron first: out/block was written of another, or with other values";
     place.sinew(&["render", "block.ron", "--no-animation"]).wants(0, &[again]);
+}
+
+/// Any file: that of a law, and one that a file of the scene names.
+#[test]
+fn a_scene_is_run_again_when_a_file_that_it_names_has_changed() {
+    let skin = r#"material: "tissue", skin: (file: "pyramid.gltf", scale: 0.05)) }"#;
+    let law = r#"law: (file: "own_law.wgsl", parameters: {"mu": 1e4, "b": 2, "bulk": 1e5})"#;
+    let text = SCENE.replace(r#"material: "tissue") }"#, skin).replace("duration: 0.2", "duration: 0.01");
+    let place = Workspace::with_scene(&text.replace("neo_hookean: Young(young: 3000, poisson: 0.45)", law));
+    place.write_pyramid();
+    fs::write(place.path("own_law.wgsl"), include_str!("../../../../examples/own_law.wgsl")).unwrap();
+    place.done(&["run", "block.ron", "--backend", "cpu"]);
+    let (before, after) = (SystemTime::UNIX_EPOCH, SystemTime::now() + Duration::from_secs(600));
+    for file in ["own_law.wgsl", "pyramid.bin"] {
+        let change = |at: SystemTime| {
+            fs::File::options().append(true).open(place.path(file)).unwrap().set_modified(at).unwrap();
+        };
+        change(after);
+        let why = format!("running block.ron first: {file} has changed since out/block was written");
+        place.sinew(&["render", "block.ron", "--no-animation"]).wants(0, &[&why]);
+        change(before);
+    }
+    place.sinew(&["render", "block.ron", "--no-animation"]).wants(0, &["drawing out/block, which is of this scene"]);
 }
 
 #[test]

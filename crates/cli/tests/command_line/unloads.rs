@@ -52,3 +52,52 @@ fn what_is_not_found_is_told_with_status_1_and_nothing_is_written() {
     assert!(!place.folder.path().join("out").exists());
     assert_eq!(place.sinew(&["unload", "block.ron", "--tolerance", "2"]).status, Some(2));
 }
+
+/// Files of tools and skins go with the scene, and so do those that these name.
+#[test]
+fn unloaded_scene_has_all_files_that_it_names() {
+    let skin = r#"material: "tissue", skin: (file: "pyramid.gltf", scale: 0.05)) }"#;
+    let tool = r#"tools: { "hook": (mesh: (path: "pyramid.gltf", scale: 0.05, spacing: 5e-3), at: (0.02, 0.02, 0.3)) },
+    contacts: [Tool(tool: "hook")], probes:"#;
+    let text = SCENE.replace(r#"material: "tissue") }"#, skin).replace("probes:", tool);
+    let place = Workspace::with_scene(&text.replace("young: 3000", "young: 3e4"));
+    place.write_pyramid();
+    let told = place.done(&["unload", "block.ron", "--tolerance", "1e-2"]);
+    assert!(told.contains("unloaded.msh, pyramid.bin, pyramid.gltf, scene.ron"), "{told}");
+    let remove = |folder: &str| {
+        for name in ["pyramid.gltf", "pyramid.bin"] {
+            fs::remove_file(place.path(folder).join(name)).unwrap();
+        }
+    };
+    remove(".");
+    let scene = "out/block-unloaded/scene.ron";
+    place.done(&["run", scene, "-o", "out/again", "--set", "duration=0.01", "--backend", "cpu"]);
+    // drawn without the files, too
+    remove("out/block-unloaded");
+    let drawn = place.sinew(&["render", "out/again", "--no-animation"]);
+    drawn.wants(0, &[]);
+    assert!(!drawn.complained.contains("is not drawn"), "{}", drawn.complained);
+    assert!(place.path("out/again/skin_block_000000.vtu").exists() && place.path("out/again/tool_hook.ply").exists());
+}
+
+#[test]
+fn a_part_that_is_placed_is_refused_before_anything_is_sought() {
+    let whole = |place: &str| {
+        let parts = format!(r#"parts: {{"p": (scene: "part.ron"{place})}}"#);
+        format!("(duration: 0.1, {parts}, loads: [Gravity(acceleration: (0, 0, -9.81))])")
+    };
+    let part = r#"(
+        bodies: {"block": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2)), material: "tissue")},
+        materials: {"tissue": (density: 1000, neo_hookean: Young(young: 3e4, poisson: 0.45), damping: 5)},
+        constraints: [Fixed(on: Set("z0"))])"#;
+    let place = Workspace::with_scene(&whole(", translate: (0.1, 0, 0)"));
+    fs::write(place.path("part.ron"), part).unwrap();
+    let ended = place.sinew(&["unload", "block.ron", "--tolerance", "1e-2"]);
+    let why = "block.ron cannot begin at an unloaded shape, so none is sought: the part `p` is placed, and a \
+               `rest_shape` is not";
+    ended.wants(2, &[why]);
+    assert!(ended.said.is_empty() && !place.path("out").exists(), "{}", ended.said);
+    fs::write(place.path("block.ron"), whole("")).unwrap();
+    place.done(&["unload", "block.ron", "--tolerance", "1e-2"]);
+    assert!(place.read("out/block-unloaded/scene.ron").contains("rest_shape: \"unloaded.msh\""));
+}
