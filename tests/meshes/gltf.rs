@@ -108,6 +108,19 @@ fn strips_fans_mirrors_and_meshes_without_corners_or_texture() {
     assert!(changed(r#", "TEXCOORD_0": 1"#, "").unwrap().texture.is_empty());
 }
 
+/// What there is of one kind with texture coordinates and of one without is a surface with some at each triangle.
+#[test]
+fn kinds_with_and_without_texture_are_read_in_either_order() {
+    let plain = r#"{"attributes": {"POSITION": 0}, "indices": 3, "mode": 5}"#;
+    let before = changed(r#""primitives": ["#, &format!(r#""primitives": [{plain}, "#)).unwrap();
+    let after = changed(r#""mode": 4}"#, &format!(r#""mode": 4}}, {plain}"#)).unwrap();
+    for (read, textured) in [(before, 2..4), (after, 0..2)] {
+        assert_eq!((read.triangles.len(), read.texture.len()), (4, 4));
+        let shown = (0..4).filter(|&row| read.texture[row] != [[0.0; 2]; 3]);
+        assert!(shown.eq(textured), "{:?}", read.texture);
+    }
+}
+
 #[test]
 fn bad_files_are_refused_in_words() {
     for (from, to, expected) in [

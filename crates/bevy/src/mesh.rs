@@ -9,15 +9,25 @@ use bevy_time::{Fixed, Time};
 use sinew::glam::DVec3;
 use sinew::{Error, Simulation};
 
+/// Where points are.
+#[derive(Clone, Default, PartialEq)]
+struct Places {
+    /// (m)
+    at: Vec<Vec3>,
+    /// Outward normals of a skin, of length 1: where texture coordinates differ at a place it has several points, with
+    /// one normal. Nothing of nodes.
+    normals: Vec<Vec3>,
+}
+
 /// What is drawn of a body in the last two ticks: its skin if it has one, else its surface.
 #[derive(Component)]
 pub(crate) struct BodyShape {
     /// Whether it is its skin.
     of_skin: bool,
-    /// Where its points were (m): nodes in the author's order, or points of its skin.
-    before: Vec<Vec3>,
+    /// Where its points were: nodes in the author's order, or points of its skin.
+    before: Places,
     /// Where they are.
-    now: Vec<Vec3>,
+    now: Places,
     /// Texture coordinates of points, from the top left corner of the picture; nothing where there are none.
     texture: Vec<[f32; 2]>,
     /// The point of each vertex.
@@ -55,7 +65,7 @@ impl BodyShape {
 
     /// Vertices are points of triangles, each once.
     fn take_triangles(&mut self, triangles: &[[u32; 3]]) {
-        let mut vertices = vec![u32::MAX; self.now.len()];
+        let mut vertices = vec![u32::MAX; self.now.at.len()];
         self.nodes.clear();
         self.triangles.clear();
         for &node in triangles.as_flattened() {
@@ -93,8 +103,26 @@ impl BodyShape {
 
     /// Vertices at a share of the way between the last two ticks.
     fn vertices(&self, share: f32) -> impl Iterator<Item = [f32; 3]> {
-        let vertex = move |&node: &u32| self.before[node as usize].lerp(self.now[node as usize], share).to_array();
-        self.nodes.iter().map(vertex)
+        let (before, now) = (&self.before.at, &self.now.at);
+        self.nodes.iter().map(move |&node| before[node as usize].lerp(now[node as usize], share).to_array())
+    }
+
+    /// Gives a mesh whose vertices are there its normals: those of the skin, between the last two ticks, too.
+    fn set_normals(&self, mesh: &mut Mesh, share: f32) {
+        let (before, now) = (&self.before.normals, &self.now.normals);
+        let known = !now.is_empty() && before.len() == now.len();
+        if !known {
+            // by area: Bevy's smooth normals, by angle, are 0 where edges are shorter than some 2 cm; a mesh that has
+            // gone to the device for good has none to make
+            let _ = mesh.try_compute_area_weighted_normals();
+            return;
+        }
+        let between = |&node: &u32| {
+            let (before, now) = (before[node as usize], now[node as usize]);
+            before.lerp(now, share).normalize_or(now).to_array()
+        };
+        let normals: Vec<[f32; 3]> = self.nodes.iter().map(between).collect();
+        let _ = mesh.try_insert_attribute(Mesh::ATTRIBUTE_NORMAL, normals);
     }
 
     /// The mesh.
@@ -102,8 +130,8 @@ impl BodyShape {
         let positions: Vec<[f32; 3]> = self.vertices(1.0).collect();
         let mut mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
             .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
-            .with_inserted_indices(Indices::U32(self.triangles.clone()))
-            .with_computed_area_weighted_normals();
+            .with_inserted_indices(Indices::U32(self.triangles.clone()));
+        self.set_normals(&mut mesh, 1.0);
         let texture: Vec<[f32; 2]> = self.nodes.iter().filter_map(|&n| self.texture.get(n as usize).copied()).collect();
         if !self.texture.is_empty() && texture.len() == self.nodes.len() {
             mesh.insert_attribute(Mesh::ATTRIBUTE_UV_0, texture);
@@ -122,16 +150,14 @@ impl BodyShape {
                 self.new_triangles = false;
             }
         }
-        // by area: Bevy's smooth normals, by angle, are 0 where edges are shorter than some 2 cm; a mesh that has gone
-        // to the device for good has none to make
-        let _ = mesh.try_compute_area_weighted_normals();
+        self.set_normals(mesh, share);
         self.at_rest = self.before == self.now;
     }
 }
 
 /// What is drawn of a body as it is now.
 struct Points {
-    places: Vec<Vec3>,
+    places: Places,
     /// By points; nothing where nobody asks for them.
     triangles: Vec<[u32; 3]>,
     texture: Vec<[f32; 2]>,
@@ -140,15 +166,17 @@ struct Points {
 impl Points {
     /// Of its skin, or of its nodes in the author's order.
     fn of(simulation: &mut Simulation, body: &str, of_skin: bool, triangles: bool) -> Result<Self, Error> {
-        let places = |places: Vec<DVec3>| places.into_iter().map(|place| place.as_vec3()).collect();
+        let single = |vectors: Vec<DVec3>| vectors.into_iter().map(|vector| vector.as_vec3()).collect();
         if of_skin {
             let skin = simulation.skin(body)?;
             // v goes upwards in meshes of files, and downwards in Bevy
             let texture = skin.texture.into_iter().map(|[u, v]| [u, 1.0 - v]).collect();
-            return Ok(Self { places: places(skin.points), triangles: skin.triangles, texture });
+            let places = Places { at: single(skin.points), normals: single(skin.normals) };
+            return Ok(Self { places, triangles: skin.triangles, texture });
         }
         let triangles = if triangles { simulation.surface_triangles(body)? } else { Vec::new() };
-        Ok(Self { places: places(simulation.positions(body)?), triangles, texture: Vec::new() })
+        let places = Places { at: single(simulation.positions(body)?), normals: Vec::new() };
+        Ok(Self { places, triangles, texture: Vec::new() })
     }
 }
 

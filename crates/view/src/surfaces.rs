@@ -9,9 +9,11 @@ use glam::{DVec3, Vec3};
 use sinew::SceneFile;
 use sinew::driver::{Loaded, State};
 use sinew::scene::schema::Cut;
-use sinew_pictures::render::{Camera, Extent, Finish, Image, Layer, Lines, Placed, Plane, Scale, SeenValues, Tools};
+use sinew_pictures::render::{
+    Camera, Extent, Finish, Image, Layer, Lines, Placed, Plane, Scale, SeenValues, Tools, image_file,
+};
 use std::hash::{Hash, Hasher};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Pictures on skins have so many bytes and pixels at most: what is larger is no picture of a skin.
@@ -24,7 +26,7 @@ pub struct Scenery {
     loaded: Option<Arc<Loaded>>,
     /// Whether bodies that are on a GPU are drawn from there: it must be the device of the picture.
     pub lends: bool,
-    /// The folder of a finished run, which has copies of what its tools look like.
+    /// The folder of a finished run, which keeps what its tools and skins look like.
     pub folder: Option<PathBuf>,
     bodies: Vec<BodyMesh>,
     tools: Tools,
@@ -74,7 +76,7 @@ impl Scenery {
             None => Tools::live(&loaded.scene),
         };
         for (mesh, body) in self.bodies.iter_mut().zip(&loaded.bodies) {
-            match picture_of(&loaded.scene, &body.name) {
+            match picture_of(&loaded.scene, self.folder.as_deref(), &body.name) {
                 Ok(picture) => mesh.picture = picture.map(Arc::new),
                 Err(why) => {
                     self.missing.push(format!("the picture on the skin of `{}` is not drawn: {why}", body.name))
@@ -130,11 +132,15 @@ impl Scenery {
     }
 }
 
-/// The picture on the skin of a body, if it has one.
-fn picture_of(scene: &SceneFile, body: &str) -> Result<Option<Image>, String> {
+/// The picture on the skin of a body, if it has one: from what the folder of a finished run keeps, or the scene's file.
+fn picture_of(scene: &SceneFile, folder: Option<&Path>, body: &str) -> Result<Option<Image>, String> {
     let skin = scene.scene.bodies.get(body).and_then(|body| body.skin.as_ref());
     let Some(name) = skin.and_then(|skin| skin.image.as_ref()) else { return Ok(None) };
-    let bytes = scene.bytes(name, MOST_BYTES).map_err(|error| format!("{name}: {error}"))?;
+    let kept = folder.and_then(|folder| std::fs::read(folder.join(image_file(body))).ok());
+    let bytes = match kept {
+        None => scene.bytes(name, MOST_BYTES).map_err(|error| format!("{name}: {error}"))?,
+        Some(bytes) => bytes.into(),
+    };
     let image = Image::from_png(&bytes, MOST_PIXELS).map_err(|error| format!("{name}: {error}"))?;
     Ok(Some(image))
 }
@@ -159,7 +165,7 @@ impl Drawn<'_> {
         let depth = |normal: Vec3| vertices().map(|point| -normal.dot(*point)).fold(f32::MIN, f32::max);
         for placed in &self.tools {
             let layer = placed.layer(camera, &self.bodies, depth);
-            surfaces.push(Surface { layer, rest: &[], normals: &[], tissue: None, picture: None, lent: None });
+            surfaces.push(Surface { layer, rest: &[], tissue: None, picture: None, lent: None });
         }
         surfaces
     }

@@ -5,7 +5,8 @@ use glam::{Vec2, Vec3};
 use sinew::driver::{Command, Session, State};
 use sinew::scene::schema::OutputField;
 use sinew::{BackendChoice, Folder, Options, SceneFile, Simulation};
-use sinew_pictures::render::{Camera, Image, Picture, View, paint, write_png};
+use sinew_pictures::render::{Camera, Image, Picture, View, keep, paint, write_png};
+use sinew_view::playback::Playback;
 use sinew_view::scene3d::{Look, Scene, Scene3d};
 use sinew_view::surfaces::Scenery;
 use sinew_view::{Settings, Start, headless};
@@ -75,7 +76,8 @@ fn both(scene3d: &mut Scene3d, state: &State, settings: &Settings, camera: &Came
     let layers = drawn.layers(camera);
     let words = ("displacement", "m", "");
     let (quantity, unit, caption) = words;
-    let picture = Picture { layers, scale, quantity, unit, caption, keys: &[], plane, ground: None, panel: false };
+    let (seen, keys, ground, panel) = (scale.range, &[], None, false);
+    let picture = Picture { layers, scale, seen, quantity, unit, caption, keys, plane, ground, panel };
     let size = (SIZE.0 as usize, SIZE.1 as usize);
     [scene3d.picture().unwrap(), paint(&picture, camera, size).unwrap()]
 }
@@ -145,20 +147,26 @@ fn edges_ghosts_shadows_and_wetness_are_seen() {
     assert!(difference(&ghost, &none) > 0.3);
 }
 
-/// A picture of a state as tissue, by a device that the simulation may have bodies on.
-/// A square on top of a cube, with a picture whose left half is green and whose right half is blue.
+/// A square on top of a cube, with places in a picture.
+const TOP: &str = "v 0 0 0.1\nv 0.1 0 0.1\nv 0.1 0.1 0.1\nv 0 0.1 0.1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
+                   f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
+
+/// The cube with that as `top.obj`, and with the picture `top.png`.
+fn with_top() -> String {
+    let skin = "material: \"tissue\", skin: (file: \"top.obj\", image: \"top.png\")";
+    include_str!("../../../scenes/cube_under_gravity.ron").replace("material: \"tissue\"", skin)
+}
+
+/// A picture whose left half is green and whose right half is blue.
 #[test]
 fn a_picture_is_seen_on_a_skin_at_its_texture_coordinates() {
     let Some((device, queue)) = device() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let square = "v 0 0 0.1\nv 0.1 0 0.1\nv 0.1 0.1 0.1\nv 0 0.1 0.1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
-                  f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
-    std::fs::write(folder.path().join("top.obj"), square).unwrap();
+    std::fs::write(folder.path().join("top.obj"), TOP).unwrap();
     let mut halves = Image::new(8, 4, [20, 200, 20]);
     (0..4).for_each(|row| halves.pixels[8 * row + 4..8 * row + 8].fill([20, 20, 200]));
     write_png(&folder.path().join("top.png"), &halves).unwrap();
-    let skin = "material: \"tissue\", skin: (file: \"top.obj\", image: \"top.png\")";
-    let cube = include_str!("../../../scenes/cube_under_gravity.ron").replace("material: \"tissue\"", skin);
+    let cube = with_top();
     let state = state_of(SceneFile::from_text("cube.ron", &cube, folder.path(), &[]).unwrap(), Vec::new());
     let mut scene3d = Scene3d::new(device, queue, SIZE);
     let above = camera(&state, Vec3::Z);
@@ -187,6 +195,32 @@ fn a_picture_is_seen_on_a_skin_at_its_texture_coordinates() {
     );
 }
 
+/// What is kept of a run does: the files of its scene are gone.
+#[test]
+fn a_finished_run_has_normals_and_the_picture_of_a_skin() {
+    let (files, out) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    std::fs::write(files.path().join("top.obj"), TOP).unwrap();
+    write_png(&files.path().join("top.png"), &Image::new(2, 2, [20, 200, 20])).unwrap();
+    let cells = ["bodies.cube.mesh.cells=(2, 2, 2)".to_string()];
+    let scene = SceneFile::from_text("cube.ron", &with_top(), files.path(), &cells).unwrap();
+    let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
+    let mut simulation = Simulation::new(&scene, &options).unwrap();
+    let mut folder = Folder::create(out.path()).unwrap();
+    std::fs::write(folder.claim("scene.ron").unwrap(), scene.text()).unwrap();
+    keep(&scene, &mut folder).unwrap();
+    simulation.write_into(&mut folder).unwrap();
+    simulation.observe().unwrap();
+    drop(files);
+    let state = Playback::open(out.path()).unwrap().state();
+    let skin = state.bodies[0].skin.as_ref().unwrap();
+    assert_eq!((skin.texture.len(), skin.normals.len()), (4, 4));
+    assert!(skin.normals.iter().all(|normal| normal.z > 0.999), "{:?}", skin.normals);
+    let mut scenery = Scenery::new(false, Some(out.path().into()));
+    scenery.follow(&state);
+    assert!(scenery.missing.is_empty(), "{:?}", scenery.missing);
+}
+
+/// A picture of a state as tissue, by a device that the simulation may have bodies on.
 fn tissue(scene3d: &mut Scene3d, state: &State, lends: bool) -> Image {
     let mut scenery = Scenery::new(lends, None);
     scenery.follow(state);

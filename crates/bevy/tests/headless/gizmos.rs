@@ -110,3 +110,37 @@ fn a_body_with_a_skin_is_drawn_as_that_with_its_texture_coordinates() {
     // the free end has sunk
     assert!(off < 1e-6 && drawn[1][2] < 0.0145, "{off} {drawn:?}");
 }
+
+/// A roof over the bar, each side of which has places of its own in the picture.
+const ROOF: &str = "v 0 0 0.015\nv 0.06 0 0.015\nv 0 0.01 0.02\nv 0.06 0.01 0.02\nv 0 0.02 0.015\nv 0.06 0.02 0.015\n\
+    vt 0 0\nvt 1 0\nvt 0 0.4\nvt 1 0.4\nvt 0 0.6\nvt 1 0.6\nvt 0 1\nvt 1 1\n\
+    f 1/1 2/2 4/4\nf 1/1 4/4 3/3\nf 3/5 4/6 6/8\nf 3/5 6/8 5/7\n";
+
+#[test]
+fn a_skin_has_one_normal_at_a_place_whatever_its_texture_coordinates() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = BAR.replace("material: \"gel\"", "material: \"gel\", skin: (file: \"roof.obj\")");
+    std::fs::write(folder.path().join("roof.obj"), ROOF).unwrap();
+    std::fs::write(folder.path().join("bar.ron"), scene).unwrap();
+    let mut app = app_in(folder.path());
+    let handle = app.world().resource::<bevy_asset::AssetServer>().load("bar.ron");
+    let scene = spawn_asset(&mut app, handle);
+    for _ in 0..2000 {
+        app.update();
+        if app.world().get::<SoftSimulation>(scene).is_some_and(|running| running.time() > 0.01) {
+            break;
+        }
+    }
+    let bar = body(&app, scene, "bar");
+    let (places, normals) = (places(&app, bar), vectors(mesh(&app, bar), Mesh::ATTRIBUTE_NORMAL));
+    let mut shared = 0;
+    assert_eq!((places.len(), normals.len()), (8, 8));
+    for (row, place) in places.iter().enumerate() {
+        for other in (0..row).filter(|other| places[*other] == *place) {
+            let [one, two] = [row, other].map(|row| Vec3::from_array(normals[row]));
+            assert!(one.distance(two) < 1e-6 && one.is_normalized() && one.z > 0.9, "{one} {two}");
+            shared += 1;
+        }
+    }
+    assert_eq!(shared, 2);
+}

@@ -40,6 +40,9 @@ pub(super) fn read(bytes: &[u8], beside: Beside<'_>) -> Result<Triangles, Fault>
             read.primitive(&primitive, to_scene).map_err(wrong)?;
         }
     }
+    if !read.triangles.texture.is_empty() {
+        read.pad_texture();
+    }
     Ok(read.triangles)
 }
 
@@ -127,8 +130,7 @@ impl Reading {
         }
         for corners in of_mode(primitive.mode(), &corners, to_scene.determinant() < 0.0) {
             if !texture.is_empty() {
-                let untold = self.triangles.triangles.len() - self.triangles.texture.len();
-                self.triangles.texture.extend(std::iter::repeat_n([[0.0; 2]; 3], untold));
+                self.pad_texture();
                 // v goes down in glTF, up in OBJ and VTK
                 self.triangles.texture.push(corners.map(|row| {
                     let [u, v] = texture[row as usize];
@@ -138,6 +140,11 @@ impl Reading {
             self.triangles.triangles.push(corners.map(|row| first + row));
         }
         Ok(())
+    }
+
+    /// Gives triangles of kinds without texture coordinates some: those of a surface are for each or for none.
+    fn pad_texture(&mut self) {
+        self.triangles.texture.resize(self.triangles.triangles.len(), [[0.0; 2]; 3]);
     }
 
     /// The numbers of an accessor, row by row.

@@ -115,6 +115,7 @@ pub fn draw_with_progress(
     let bottom = top(size) as f32;
     let low = shown.any(|row| placed(row).iter().any(|tool| tool.reaches(&camera, bottom)));
     let centre = reader.field().centre;
+    let extremes = seen.extremes();
     let scale = match how.range.map(|(low, high)| (low as f32, high as f32)) {
         Some(range) => Scale { range, centre: centre.filter(|centre| range.0 < *centre && *centre < range.1) },
         None => seen.scale(centre, centre.is_none()),
@@ -136,6 +137,7 @@ pub fn draw_with_progress(
         let picture = Picture {
             layers: reader.layers(&state, how.edges).into_iter().chain(tools).collect(),
             scale,
+            seen: extremes,
             quantity: &quantity,
             unit,
             caption: &caption(row),

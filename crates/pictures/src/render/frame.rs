@@ -105,8 +105,7 @@ impl FrameFile {
 
     /// The values of an array, as many as rows times components.
     pub fn floats(&self, entry: &ArrayHeader) -> Result<Vec<f32>, RenderError> {
-        let rows = if entry.place == FieldAssociation::Cells { self.cells } else { self.points };
-        let count = rows.saturating_mul(entry.components);
+        let count = self.count(entry);
         Ok(match entry.kind.as_str() {
             "Float32" => self.unpack(entry, count)?.into_iter().map(f32::from_ne_bytes).collect(),
             "Float64" => self.unpack(entry, count)?.into_iter().map(|bytes| f64::from_ne_bytes(bytes) as f32).collect(),
@@ -115,6 +114,26 @@ impl FrameFile {
             "Int64" => self.unpack(entry, count)?.into_iter().map(|bytes| i64::from_ne_bytes(bytes) as f32).collect(),
             other => return Err(self.damaged(entry, &format!("is of the unexpected type {other}"))),
         })
+    }
+
+    /// The whole numbers of an array, as many as rows times components: those of things, which floats of
+    /// [`Self::floats`] have no digits for.
+    pub fn integers(&self, entry: &ArrayHeader) -> Result<Vec<i64>, RenderError> {
+        let count = self.count(entry);
+        Ok(match entry.kind.as_str() {
+            "UInt8" => self.unpack(entry, count)?.into_iter().map(|[byte]| i64::from(byte)).collect(),
+            "UInt32" => {
+                self.unpack(entry, count)?.into_iter().map(|bytes| i64::from(u32::from_ne_bytes(bytes))).collect()
+            }
+            "Int64" => self.unpack(entry, count)?.into_iter().map(i64::from_ne_bytes).collect(),
+            other => return Err(self.damaged(entry, &format!("is of the type {other}, not of whole numbers"))),
+        })
+    }
+
+    /// How many values an array has.
+    fn count(&self, entry: &ArrayHeader) -> usize {
+        let rows = if entry.place == FieldAssociation::Cells { self.cells } else { self.points };
+        rows.saturating_mul(entry.components)
     }
 
     /// The values of an array of vectors.

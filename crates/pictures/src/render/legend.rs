@@ -12,6 +12,8 @@ use glam::Vec3;
 /// The ground of the legend where surfaces end above it.
 pub const PANEL: [u8; 3] = [247, 248, 250];
 const INK: &str = "#20262e";
+/// How long a pointed end of the bar is, in letters' heights.
+const POINT: f64 = 0.8;
 /// Red, green and blue for x, y and z.
 const AXES: [(&str, Vec3, &str); 3] = [("x", Vec3::X, "#c03447"), ("y", Vec3::Y, "#2f7d45"), ("z", Vec3::Z, "#2a5ea8")];
 
@@ -122,15 +124,35 @@ fn bar(page: &mut Drawing, picture: &Picture<'_>, layout: &Layout, (left, right)
     let em = layout.em;
     let (foot, head) = ((layout.base() - 1.2 * em).round(), (layout.base() - 2.0 * em).round());
     let (low, high) = picture.scale.range;
+    let (prefix, factor) = if picture.unit.is_empty() { ("", 1.0) } else { prefix(low.abs().max(high.abs())) };
+    // values beyond the ends stand where the bar would be, if they leave most of it
+    let beyond = beyond(picture.scale.range, picture.seen);
+    let texts = beyond.map(|value| value.map(|value| three_digits(f64::from(value) * factor)));
+    let wide = texts.iter().flatten().map(|text| layout.wide(text)).sum::<f64>();
+    let has_room = wide < 0.4 * (right - left);
+    let room = |text: &Option<String>| {
+        text.as_ref().map_or(0.0, |text| POINT * em + if has_room { layout.wide(text) + 0.3 * em } else { 0.0 })
+    };
+    let (left, right) = ((left + room(&texts[0])).round(), (right - room(&texts[1])).round());
     let columns = (right - left) as usize;
     for column in 0..columns {
         let share = column as f32 / (columns - 1).max(1) as f32;
-        let colour = picture.scale.srgb(low + (high - low) * share).to_array().map(|c| (c * 255.0).round() as u8);
         let at = left + column as f64;
-        page.area([at, head, at + 1.0, foot], &format!("#{:02x}{:02x}{:02x}", colour[0], colour[1], colour[2]));
+        page.area([at, head, at + 1.0, foot], &hex(picture.scale.srgb(low + (high - low) * share)));
     }
     page.frame([left - 0.5, head - 0.5, right + 0.5, foot + 0.5], "#59626e");
-    let (prefix, factor) = if picture.unit.is_empty() { ("", 1.0) } else { prefix(low.abs().max(high.abs())) };
+    for (text, (end, towards, anchor, value)) in
+        texts.iter().zip([(left, -1.0, Anchor::End, low), (right, 1.0, Anchor::Start, high)])
+    {
+        let Some(text) = text else { continue };
+        let (tip, middle) = (end + towards * POINT * em, (head + foot) / 2.0);
+        page.band(&[(end, head), (tip, middle), (end, foot)], &hex(picture.scale.srgb(value)), 1.0);
+        let side = end + 0.5 * towards;
+        page.path(&[(side, head - 0.5), (tip, middle), (side, foot + 0.5)], "#59626e", 1.0, 1.0);
+        if has_room {
+            page.strong((tip + 0.3 * towards * em, middle + 0.35 * em), text, em, INK, anchor);
+        }
+    }
     let (low, high) = (f64::from(low) * factor, f64::from(high) * factor);
     for (value, text) in ticks(low, high, ((right - left) / (0.56 * em)) as usize) {
         let x = left + ((value - low) / (high - low) * (right - left - 1.0)).round() + 0.5;
@@ -140,6 +162,31 @@ fn bar(page: &mut Drawing, picture: &Picture<'_>, layout: &Layout, (left, right)
     let unit = if picture.unit.is_empty() { String::new() } else { format!(" ({prefix}{})", picture.unit) };
     let line = format!("{}{unit}", picture.quantity);
     page.strong(((left + right) / 2.0, head - 0.45 * em), &line, em, INK, Anchor::Middle);
+}
+
+/// A colour (sRGB in 0 to 1) as drawings take it.
+fn hex(srgb: Vec3) -> String {
+    let [red, green, blue] = srgb.to_array().map(|c| (c * 255.0).round() as u8);
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+/// The least and the largest value of those seen, where they lie below and above the range by more than a hundredth of
+/// it.
+fn beyond((low, high): (f32, f32), (least, most): (f32, f32)) -> [Option<f32>; 2] {
+    let more = 0.01 * (high - low);
+    [(least < low - more).then_some(least), (most > high + more).then_some(most)]
+}
+
+/// Three digits of a number.
+fn three_digits(value: f64) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    let before = value.abs().log10().floor() as i32 + 1;
+    match before {
+        -1..=6 => format!("{value:.*}", (3 - before).max(0) as usize),
+        _ => format!("{value:.2e}"),
+    }
 }
 
 /// The prefix that gives a number one to three digits before the point, and the factor that belongs to it.
@@ -202,6 +249,15 @@ mod tests {
         assert_eq!(texts(-1.0, 1.0, 44), ["-1.0", "-0.5", "0.0", "0.5", "1.0"]);
         assert_eq!(texts(0.0, 12.3, 10), ["0", "5", "10"]);
         assert_eq!(texts(0.9996, 1.0004, 30), ["0.9996", "0.9998", "1.0000", "1.0002", "1.0004"]);
+    }
+
+    #[test]
+    fn what_lies_beyond_the_bar_is_known_by_more_than_a_hundredth() {
+        assert_eq!(beyond((0.0, 2.0), (-0.01, 2.01)), [None, None]);
+        assert_eq!(beyond((0.0, 2.0), (-0.5, 7.0)), [Some(-0.5), Some(7.0)]);
+        assert_eq!(beyond((0.0, 2.0), (f32::INFINITY, f32::NEG_INFINITY)), [None, None]);
+        let texts = [0.0, 12345.0, -4.2567, 0.05, 1e33, -2e-9].map(three_digits);
+        assert_eq!(texts, ["0", "12345", "-4.26", "0.0500", "1.00e33", "-2.00e-9"]);
     }
 
     #[test]

@@ -9,8 +9,10 @@
 //! groups   bodies, materials -> opacity        state    a frame -> layers of faces
 //! range    values -> what the colours span     camera   where the eye stands
 //! picture  all of that -> image                triangles, raster, normals, light, occlusion, colour, legend
+//! ghost    skins, faces -> layers at rest
 //! tools    a scene -> layers of its tools       clip     polygons -> what of them is near
 //! encode   images -> PNG                       animation, palette -> GIF
+//! kept     a scene -> files of it in its output folder
 //! ```
 
 mod animation;
@@ -22,8 +24,10 @@ mod encode;
 mod error;
 mod field;
 mod frame;
+mod ghost;
 mod groups;
 mod image;
+mod kept;
 mod legend;
 mod light;
 mod nodal;
@@ -52,9 +56,10 @@ pub use error::RenderError;
 pub use field::{Known, known};
 pub use frame::{FieldAssociation, FrameFile};
 pub use image::Image;
+pub use kept::{image_file, keep};
 pub use legend::Key;
 pub use nodal::Averages;
-pub use normals::{creases, of_corners};
+pub use normals::{creases, of_layer};
 pub use picture::{Colouring, Layer, Lines, Picture, paint, stage};
 pub use plane::Plane;
 pub use range::SeenValues;
@@ -63,4 +68,4 @@ pub use section::Section;
 pub use series::Series;
 pub use skins::Skins;
 pub use surface::{Faces, Outer, Skin};
-pub use tools::{Placed, Tools, copy_of};
+pub use tools::{Placed, Tools};

@@ -1,13 +1,25 @@
 //! Normals for shading: smooth over what is round, sharp at edges.
 
+use super::picture::Layer;
 use glam::Vec3;
 
 /// Cosine of the largest angle between neighbouring faces that still look like one smooth surface (40°).
 const CREASE: f32 = 0.766;
 
+/// The normals of a layer's faces, one a corner.
+pub fn of_layer(layer: &Layer<'_>) -> Vec<[Vec3; 4]> {
+    match layer.flat {
+        Some(normal) => vec![[normal; 4]; layer.faces.len()],
+        None if !layer.normals.is_empty() && layer.normals.len() == layer.vertices.len() => {
+            layer.faces.iter().map(|face| face.map(|point| layer.normals[point as usize])).collect()
+        }
+        None => of_corners(layer.vertices, layer.faces),
+    }
+}
+
 /// One normal for each corner of each face (a triangle repeats its last point): the mean of the normals of the faces
 /// around that point which lie within 40° of the face's own.
-pub fn of_corners(vertices: &[Vec3], faces: &[[u32; 4]]) -> Vec<[Vec3; 4]> {
+fn of_corners(vertices: &[Vec3], faces: &[[u32; 4]]) -> Vec<[Vec3; 4]> {
     let own: Vec<Vec3> = faces.iter().map(|face| area_vector(vertices, face)).collect();
     let around = Around::new(vertices.len(), faces);
     let corner = |face: usize, point: u32| {

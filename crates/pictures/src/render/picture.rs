@@ -19,6 +19,8 @@ pub struct Picture<'a> {
     pub layers: Vec<Layer<'a>>,
     /// Which value has which colour.
     pub scale: Scale,
+    /// The least and the largest value that are seen in the series: the legend marks where they lie beyond the scale.
+    pub seen: (f32, f32),
     /// What is coloured: "von Mises stress".
     pub quantity: &'a str,
     /// Its SI unit, "Pa"; empty for a plain number. The legend chooses a prefix.
@@ -48,6 +50,8 @@ pub struct Layer<'a> {
     pub finish: Finish,
     /// Which sides of faces are drawn as lines.
     pub lines: Lines<'a>,
+    /// Normals of the vertices, of length 1, where these are known; else what the faces around them say.
+    pub normals: &'a [Vec3],
     /// The normal of all of them, where that is known.
     pub flat: Option<Vec3>,
     /// Whether the picture's plane cuts them.

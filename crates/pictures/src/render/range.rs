@@ -16,6 +16,12 @@ impl SeenValues {
         }
     }
 
+    /// The least and the largest value that was added; of nothing the least is above the largest.
+    pub(super) fn extremes(&self) -> (f32, f32) {
+        let beyond_all = (f32::INFINITY, f32::NEG_INFINITY);
+        self.values.iter().fold(beyond_all, |(least, most), value| (least.min(*value), most.max(*value)))
+    }
+
     /// A scale for what was seen: from the value that one in two hundred lies below to that which one in two hundred
     /// exceeds, so that a few outliers do not wash out the rest. Sizes begin at 0; fields with a middle that have
     /// values on both sides of it span as much on either side.

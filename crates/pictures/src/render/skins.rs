@@ -21,6 +21,11 @@ pub struct Skin {
     /// Before anything moves (m), and now.
     pub rest: Vec<Vec3>,
     pub vertices: Vec<Vec3>,
+    /// Outward normals now, of length 1: where texture coordinates differ at a place it has several points, with one
+    /// normal.
+    pub normals: Vec<Vec3>,
+    /// Texture coordinates (u, v), v upwards; nothing of skins without.
+    pub texture: Vec<[f32; 2]>,
     /// Triangles; the last point is repeated.
     pub faces: Vec<[u32; 4]>,
     /// What carries each point: a cell of the frame, and the shares of its nodes.
@@ -54,11 +59,11 @@ impl Skins {
 /// Rows of the cells by the numbers of body and element.
 fn rows(frame: &FrameFile) -> Result<HashMap<(u32, i64), usize>, RenderError> {
     let numbers = |name: &str| match frame.entry(FieldAssociation::Cells, name) {
-        Some(entry) => frame.floats(entry),
-        None => Ok(vec![0.0; frame.cells]),
+        Some(entry) => frame.integers(entry),
+        None => Ok(vec![0; frame.cells]),
     };
     let pairs = numbers("body")?.into_iter().zip(numbers("element")?).enumerate();
-    Ok(pairs.map(|(row, (body, element))| ((body as u32, element as i64), row)).collect())
+    Ok(pairs.map(|(row, (body, element))| ((body as u32, element), row)).collect())
 }
 
 impl Skin {
@@ -70,18 +75,23 @@ impl Skin {
         };
         let rest = file.vectors(array(FieldAssociation::Mesh, "Points")?)?;
         let displacement = file.vectors(array(FieldAssociation::Points, "displacement")?)?;
-        let body = file.floats(array(FieldAssociation::Points, "body")?)?.first().map_or(0, |body| *body as u32);
-        let elements = file.floats(array(FieldAssociation::Points, "element")?)?;
+        let normals = file.vectors(array(FieldAssociation::Points, "normal")?)?;
+        let texture = file.entry(FieldAssociation::Points, "texture").filter(|entry| entry.components == 2);
+        let texture = texture.map(|entry| file.floats(entry)).transpose()?.unwrap_or_default();
+        let body = file.integers(array(FieldAssociation::Points, "body")?)?.first().map_or(0, |body| *body as u32);
+        let elements = file.integers(array(FieldAssociation::Points, "element")?)?;
         let weights = file.floats(array(FieldAssociation::Points, "weights")?)?;
         if weights.len() != MOST_NODES * rest.len() {
             return Err(RenderError::damaged(path, format!("the array weights has not {MOST_NODES} values a row")));
         }
-        let carrier = |(element, weights): (f32, &[f32])| {
-            let row = cells.get(&(body, element as i64)).copied().unwrap_or(usize::MAX);
+        let carrier = |(element, weights): (i64, &[f32])| {
+            let row = cells.get(&(body, element)).copied().unwrap_or(usize::MAX);
             (row, std::array::from_fn(|node| weights[node]))
         };
         Ok(Skin {
             body,
+            normals,
+            texture: texture.as_chunks::<2>().0.to_vec(),
             vertices: rest.iter().zip(&displacement).map(|(rest, by)| *rest + *by).collect(),
             faces: file.triangles()?.into_iter().map(|[a, b, c]| [a, b, c, c]).collect(),
             carriers: elements.into_iter().zip(weights.chunks_exact(MOST_NODES)).map(carrier).collect(),

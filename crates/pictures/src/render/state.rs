@@ -5,6 +5,7 @@ use super::camera::Fit;
 use super::draw::RenderOptions;
 use super::field::Field;
 use super::frame::{FieldAssociation, FrameFile};
+use super::ghost::Ghosts;
 use super::groups::Groups;
 use super::legend::Key;
 use super::nodal::Averages;
@@ -26,7 +27,6 @@ use std::path::Path;
 pub struct Reader {
     field: Field,
     smooth: bool,
-    ghost: bool,
     groups: Groups,
     plane: Option<Plane>,
     mesh: Mesh,
@@ -34,19 +34,14 @@ pub struct Reader {
     skin: Skin,
     /// Fine surfaces that bodies have.
     skins: Skins,
-    /// That surface at rest: its faces, and which of their sides are edges of the shape.
-    rest: Option<Rest>,
+    /// What is drawn of the shape at rest.
+    ghosts: Option<Ghosts>,
 }
 
 struct Mesh {
     cells: Cells,
     faces: Faces,
     points: usize,
-}
-
-struct Rest {
-    faces: Vec<[u32; 4]>,
-    creases: Vec<u8>,
 }
 
 /// One frame.
@@ -85,21 +80,18 @@ impl Reader {
         let points = points(first)?;
         let whole = whole(folder, &mesh)?;
         let began = whole.as_ref().unwrap_or(&mesh);
-        let rest = picture.ghost.then(|| {
-            let faces: Vec<[u32; 4]> = began.faces.surface(|_| Some(0), None).iter().map(|face| face.points).collect();
-            Rest { creases: super::normals::creases(&points, &faces), faces }
-        });
+        let skins = Skins::open(folder);
+        let ghosts = picture.ghost.then(|| Ghosts::new(first, &points, &began.faces, &skins)).transpose()?;
         let (low, high) = points.iter().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(*p), high.max(*p)));
         Ok(Reader {
             smooth: field.real && picture.colours == Colours::Smooth,
             field,
-            ghost: picture.ghost,
             groups: Groups::new(folder, &picture.opacity)?,
             plane: picture.cut.as_ref().map(|cut| Plane::new(cut, low.distance(high))),
             skin: began.faces.skin(),
-            skins: Skins::open(folder),
+            skins,
             mesh,
-            rest,
+            ghosts,
         })
     }
 
@@ -228,6 +220,7 @@ impl Reader {
             values: state.values.as_deref().map_or(Colouring::Corners(&part.values), Colouring::Vertices),
             finish: part.finish,
             lines,
+            normals: &[],
             flat: None,
             cut: true,
         });
@@ -237,18 +230,11 @@ impl Reader {
             values: Colouring::Vertices(&section.values),
             finish: *finish,
             lines: if edges { Lines::Sides(&section.sides) } else { Lines::None },
+            normals: &[],
             flat: self.plane.map(|plane| plane.normal),
             cut: false,
         });
-        let ghost = self.rest.iter().map(|rest| Layer {
-            vertices: &state.rest,
-            faces: &rest.faces,
-            values: Colouring::Nothing,
-            finish: Finish::Ghost,
-            lines: Lines::Sides(&rest.creases),
-            flat: None,
-            cut: true,
-        });
+        let ghosts = self.ghosts.iter().flat_map(Ghosts::layers);
         let skins = state.skins.iter().map(|(finish, skin, values)| Layer {
             vertices: &skin.vertices,
             faces: &skin.faces,
@@ -256,10 +242,11 @@ impl Reader {
             finish: *finish,
             // their triangles are fine, and say nothing of elements
             lines: Lines::None,
+            normals: &skin.normals,
             flat: None,
             cut: true,
         });
-        surface.chain(skins).chain(sections).chain(ghost).collect()
+        surface.chain(skins).chain(sections).chain(ghosts).collect()
     }
 }
 
@@ -310,13 +297,16 @@ impl State {
             for (point, rest) in skin.vertices.iter_mut().zip(&skin.rest) {
                 *point = *rest + (*point - *rest) * factor;
             }
+            // those of where it was
+            skin.normals.clear();
         }
     }
 
     /// What its surfaces are, beside coloured by values.
     pub fn keys(&self, reader: &Reader) -> Vec<Key> {
         let bared = self.parts.iter().any(|part| part.finish == Finish::Bared);
-        [(bared, Key::Bared), (reader.ghost, Key::Ghost)].into_iter().filter(|key| key.0).map(|key| key.1).collect()
+        let keys = [(bared, Key::Bared), (reader.ghosts.is_some(), Key::Ghost)];
+        keys.into_iter().filter(|key| key.0).map(|key| key.1).collect()
     }
 
     /// How far its bodies are behind a plane through the origin with a normal (m).
@@ -346,7 +336,6 @@ impl State {
         }
         let cut = self.sections.iter().flat_map(|section| &section.1.values);
         cut.for_each(|value| seen.value(*value));
-        let ghost = reader.rest.iter().flat_map(|rest| rest.faces.iter().flatten());
-        ghost.for_each(|point| fit.see(self.rest[*point as usize]));
+        reader.ghosts.iter().flat_map(Ghosts::corners).for_each(|point| fit.see(point));
     }
 }

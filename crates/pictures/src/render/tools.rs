@@ -2,6 +2,7 @@
 
 use super::camera::{Camera, Fit};
 use super::clip::Extent;
+use super::kept::tool_file;
 use super::picture::{Colouring, Layer, Lines};
 use super::raster::Finish;
 use glam::{DMat3, DQuat, DVec3, Vec3};
@@ -57,13 +58,6 @@ const BEHIND: f32 = 0.02;
 const UPWARDS: f32 = 0.9;
 /// Which sides of the two triangles of a square are its sides.
 const OUTLINE: [u8; 2] = [0b011, 0b110];
-
-/// The name of the file in an output folder that keeps the triangles of a tool: those of the scene may have changed
-/// when the run is drawn, or be elsewhere.
-pub fn copy_of(name: &str, mesh: &ToolMesh) -> String {
-    let ending = Path::new(&mesh.path).extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    format!("tool_{name}.{}", ending.as_deref().unwrap_or("stl"))
-}
 
 impl Tools {
     /// The tools of a scene that was run into a folder, and for each that cannot be drawn why: its file is gone, or has
@@ -162,14 +156,14 @@ impl Tools {
     }
 }
 
-/// The surface of a tool, from its shape, or from the copy of its triangles in the output folder or the scene's file.
+/// The surface of a tool, from its shape, or from its triangles in the output folder or the scene's file.
 fn surface(scene: &SceneFile, folder: &Path, name: &str, tool: &schema::Tool) -> Result<Surface, String> {
     match (&tool.shape, &tool.mesh) {
         (Some(shape), _) => match Solid::new(shape.clone(), tool.rounding) {
             Ok(solid) => Ok(solid.surface(SEGMENTS, 1.0)),
             Err(problem) => Err(problem.to_string()),
         },
-        (None, Some(mesh)) => triangles(scene, &folder.join(copy_of(name, mesh)), mesh),
+        (None, Some(mesh)) => triangles(scene, &folder.join(tool_file(name)), mesh),
         (None, None) => Err("it has neither a shape nor a mesh".into()),
     }
 }
@@ -177,7 +171,9 @@ fn surface(scene: &SceneFile, folder: &Path, name: &str, tool: &schema::Tool) ->
 /// Where a free tool was at which time, from the table of a probe of its pose in the output folder.
 fn seen_way(scene: &SceneFile, tool: &str, folder: &Path) -> Result<Vec<Key>, String> {
     let of_tool = |what: &Quantity| matches!(what, Quantity::ToolPose { tool: of } if of == tool);
-    let Some((probe, _)) = scene.scene.probes.iter().find(|(_, probe)| of_tool(&probe.what)) else {
+    // the columns of a peak are others
+    let follows = |probe: &schema::Probe| of_tool(&probe.what) && !probe.peak;
+    let Some((probe, _)) = scene.scene.probes.iter().find(|(_, probe)| follows(probe)) else {
         return Err(format!("it moves freely, and no probe `ToolPose(tool: {tool:?})` tells where it is"));
     };
     let name = format!("probe_{probe}.csv");
@@ -193,17 +189,12 @@ fn seen_way(scene: &SceneFile, tool: &str, folder: &Path) -> Result<Vec<Key>, St
     path.filter(|path| !path.is_empty()).ok_or_else(|| format!("{name} does not tell where it is"))
 }
 
-/// The triangles of a tool, from the copy in the output folder or from the scene's file.
-fn triangles(scene: &SceneFile, copy: &Path, mesh: &ToolMesh) -> Result<Surface, String> {
-    let bytes = match std::fs::read(copy) {
-        Ok(bytes) => bytes,
-        Err(_) => {
-            let found = scene.bytes(&mesh.path, u64::MAX);
-            found.map_err(|error| format!("{}: {error}", mesh.path))?.into_owned()
-        }
+/// The triangles of a tool, from what the output folder keeps of them or from the scene's file.
+fn triangles(scene: &SceneFile, kept: &Path, mesh: &ToolMesh) -> Result<Surface, String> {
+    let mut surface = match std::fs::read(kept) {
+        Ok(bytes) => Triangles::from_bytes(kept, &bytes).map_err(|error| error.to_string())?,
+        Err(_) => scene.surface(&mesh.path)?,
     };
-    let beside = |name: &str| scene.bytes_beside(&mesh.path, name);
-    let mut surface = Triangles::from_bytes_beside(&mesh.path, &bytes, &beside).map_err(|error| error.to_string())?;
     surface.points.iter_mut().for_each(|point| *point *= mesh.scale);
     Ok((surface.points, surface.triangles))
 }
@@ -265,6 +256,7 @@ impl Placed<'_> {
             values: Colouring::Nothing,
             finish,
             lines: if finish == Finish::Pane { Lines::Sides(&OUTLINE) } else { Lines::None },
+            normals: &[],
             flat: self.plane,
             cut: false,
         }

@@ -46,10 +46,7 @@ impl Maker<'_> {
         let project = |point: &Vec3| sampled(self.camera.project(*point));
         let places: Vec<Vec3> = layer.vertices.par_iter().map(project).collect();
         let beyond: Vec<f32> = layer.vertices.par_iter().map(|point| self.beyond(*point)).collect();
-        let normals = match layer.flat {
-            None => normals::of_corners(layer.vertices, layer.faces),
-            Some(normal) => vec![[normal; 4]; layer.faces.len()],
-        };
+        let normals = normals::of_layer(layer);
         let even = self.even_ink(&places);
         for (row, face) in layer.faces.iter().enumerate() {
             let corners = face.map(|point| places[point as usize]);

@@ -2,6 +2,7 @@
 //! at.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod skins;
 mod tools;
 mod words;
 
@@ -214,12 +215,14 @@ fn painted(squares: &[(f32, f32, Finish)], scale: Scale, lines: Lines<'_>) -> si
         values: Colouring::Faces(&values[row]),
         finish: squares[row].2,
         lines,
+        normals: &[],
         flat: None,
         cut: true,
     });
     let (layers, keys) = (layers.collect(), &[]);
     let (plane, ground, panel) = (None, None, false);
-    let picture = Picture { layers, scale, quantity: "value", unit: "", caption: "", keys, plane, ground, panel };
+    let (quantity, unit, caption, seen) = ("value", "", "", scale.range);
+    let picture = Picture { layers, scale, seen, quantity, unit, caption, keys, plane, ground, panel };
     let mut fit = Fit::new(&View::upright(Vec3::NEG_Y), LEFT_TOP, RIGHT_BOTTOM);
     square(0.0).into_iter().for_each(|vertex| fit.see(vertex));
     paint(&picture, &fit.camera().unwrap(), (400, 400)).unwrap()

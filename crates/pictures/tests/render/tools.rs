@@ -2,9 +2,9 @@
 
 use crate::words::{BOX, Run, Seen, plain, seen_with};
 use glam::DVec3;
-use sinew::SceneFile;
 use sinew::scene::schema::Picture;
-use sinew_pictures::render::{Tools, copy_of};
+use sinew::{Folder, SceneFile};
+use sinew_pictures::render::{Tools, keep};
 use std::path::Path;
 
 /// A scene with some tools; the bodies of the pictures are elsewhere.
@@ -138,26 +138,69 @@ fn long_instruments_do_not_make_bodies_small() {
     assert!(steel(&seen).len() > 2000, "{}", steel(&seen).len());
 }
 
+/// The pyramid of 3 m in mm, its numbers in a file of their own.
+const GLTF: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+"accessors": [
+  {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [3000, 3000, 3000]},
+  {"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"}],
+"bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}],
+"buffers": [{"uri": "pyramid.bin", "byteLength": 72}]}"#;
+
 #[test]
-fn tools_of_triangles_are_drawn_from_the_copy_or_the_file_and_else_left_out() {
-    let folder = BOX.write("tool_mesh");
-    let text = r#""hook": (mesh: (path: "pyramid.OBJ", scale: 0.001), at: (1, 1, 5)), "#.to_string() + BALL;
-    let scene = scene(&text, "", &folder);
-    let pyramid = "v 0 0 0\nv 3000 0 0\nv 0 3000 0\nv 0 0 3000\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
-    let mesh = scene.scene.tools["hook"].mesh.clone().unwrap();
-    let (copy, file) = (folder.join(copy_of("hook", &mesh)), folder.join("pyramid.OBJ"));
-    assert!(copy.ends_with("tool_hook.obj"));
-    [&copy, &file].into_iter().for_each(|path| drop(std::fs::remove_file(path)));
-    let (left, missing) = Tools::of_scene(&scene, &folder);
-    let [note] = &missing[..] else { panic!("{missing:?}") };
-    assert!(note.starts_with("the tool `hook` is not drawn: pyramid.OBJ: "), "{note}");
+fn tools_of_triangles_are_drawn_from_what_is_kept_or_the_file_and_else_left_out() {
+    let (folder, files) = (BOX.write("tool_mesh"), tempfile::tempdir().unwrap());
+    let places = [[0.0_f32; 3], [3000.0, 0.0, 0.0], [0.0, 3000.0, 0.0], [0.0, 0.0, 3000.0]];
+    let mut numbers: Vec<u8> = places.iter().flatten().flat_map(|number| number.to_le_bytes()).collect();
+    numbers.extend([0_u16, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3].iter().flat_map(|row| row.to_le_bytes()));
+    let obj = "v 0 0 0\nv 3000 0 0\nv 0 3000 0\nv 0 0 3000\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n".as_bytes();
     let count = |tools: &Tools| steel(&rendered(&folder, tools, plain())).len();
-    let ball = count(&left);
-    assert!(ball > 1000);
-    for path in [&copy, &file] {
-        std::fs::write(path, pyramid).unwrap();
-        let (both, missing) = Tools::of_scene(&scene, &folder);
-        assert!(missing.is_empty() && count(&both) > ball + 1000);
-        std::fs::remove_file(path).unwrap();
+    for (name, contents) in [
+        ("pyramid.OBJ", vec![("pyramid.OBJ", obj)]),
+        ("pyramid.gltf", vec![("pyramid.gltf", GLTF.as_bytes()), ("pyramid.bin", &*numbers)]),
+    ] {
+        let text = format!(r#""hook": (mesh: (path: "{name}", scale: 0.001), at: (1, 1, 5)), {BALL}"#);
+        let scene = scene(&text, "", files.path());
+        let (left, missing) = Tools::of_scene(&scene, &folder);
+        let [note] = &missing[..] else { panic!("{missing:?}") };
+        assert!(note.starts_with(&format!("the tool `hook` is not drawn: {name}: ")), "{note}");
+        let ball = count(&left);
+        assert!(ball > 1000);
+        for (file, bytes) in &contents {
+            std::fs::write(files.path().join(file), bytes).unwrap();
+        }
+        let kept = files.path().join(format!("run of {name}"));
+        keep(&scene, &mut Folder::create(&kept).unwrap()).unwrap();
+        let both = |run: &Path| {
+            let (both, missing) = Tools::of_scene(&scene, run);
+            assert!(missing.is_empty(), "{missing:?}");
+            count(&both)
+        };
+        let from_file = both(&folder);
+        for (file, _) in &contents {
+            std::fs::remove_file(files.path().join(file)).unwrap();
+        }
+        let from_kept = both(&kept);
+        assert!(from_file > ball + 1000 && from_kept == from_file, "{ball} {from_file} {from_kept}");
     }
+}
+
+/// A peak's table has other columns than the way of a tool.
+#[test]
+fn a_free_tool_is_where_a_probe_that_follows_it_says() {
+    let folder = BOX.write("tool_free");
+    let ball = r#""ball": (shape: Sphere(radius: 1), free: (density: 1000))"#;
+    let course = r#"probes: {"a": (what: ToolPose(tool: "ball"), peak: true), "b": (what: ToolPose(tool: "ball"))},"#;
+    let way = |z: f64| format!("t,x,y,z,rx,ry,rz\n0,2.5,2.5,{z},0,0,0\n");
+    std::fs::write(folder.join("probe_a.csv"), way(20.0)).unwrap();
+    std::fs::write(folder.join("probe_b.csv"), way(6.0)).unwrap();
+    let (free, missing) = Tools::of_scene(&scene(ball, course, Path::new("")), &folder);
+    assert!(missing.is_empty(), "{missing:?}");
+    let poses = free.poses(0, 0.0);
+    let [(name, place, _)] = &poses[..] else { panic!("{} tools", poses.len()) };
+    assert!(name == "ball" && place.distance(DVec3::new(2.5, 2.5, 6.0)) < 1e-12, "{place}");
+    // without one it is told
+    let alone = course.replace(r#", "b": (what: ToolPose(tool: "ball"))"#, "");
+    let (_, missing) = Tools::of_scene(&scene(ball, &alone, Path::new("")), &folder);
+    assert!(missing[0].contains("no probe `ToolPose(tool: \"ball\")` tells where it is"), "{missing:?}");
 }

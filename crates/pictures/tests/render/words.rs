@@ -232,6 +232,29 @@ fn a_fixed_range_says_which_value_has_which_colour() {
     assert_eq!(draw(&folder, &options).unwrap().range, (0.0, 2.0));
 }
 
+/// The yellow of the last colour ends the bar in a line, and in a point if there are values beyond.
+#[test]
+fn the_bar_has_a_point_where_values_lie_beyond_it() {
+    // one element of so many is less than one in two hundred of what is seen
+    let runs: [(&str, fn(DVec3) -> f32); 2] = [
+        ("beyond", |at| if at.max_element() < 1.0 { 20.0 } else { 0.1 * at.x as f32 }),
+        ("within", |at| 0.1 * at.x as f32),
+    ];
+    let [with, without] = runs.map(|(name, value)| {
+        let folder = Run { cells: [12; 3], value, ..BOX }.write(name);
+        let how = Picture { range: None, colours: Colours::Elements, ..plain() };
+        let options =
+            RenderOptions { field: Some("von_mises".into()), ..RenderOptions::new(how, folder.join("bar.png")) };
+        let (_, high) = draw(&folder, &options).unwrap().range;
+        assert!(high > 1.0 && high < 1.2, "{name}: {high}");
+        let (rows, bytes) = (stage(SIZE).1.y as usize..SIZE.1, read_png(&options.out).1);
+        let picture = Seen { bytes };
+        let is_last = |c: [u8; 3]| c[0].abs_diff(0xfd) < 3 && c[1].abs_diff(0xe7) < 3 && c[2].abs_diff(0x25) < 3;
+        rows.flat_map(|y| (0..SIZE.0).map(move |x| (x, y))).filter(|&(x, y)| is_last(picture.at(x, y))).count()
+    });
+    assert!(without > 5 && with > without + 8, "{with} pixels with values beyond, {without} without");
+}
+
 #[test]
 fn the_point_looked_at_is_in_the_middle_and_zoom_enlarges() {
     let folder = BOX.write("look_at");

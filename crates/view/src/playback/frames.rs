@@ -35,6 +35,11 @@ fn numbers(frame: &FrameFile, of: FieldAssociation, name: &str) -> Result<Option
     entry.map(|entry| Ok((frame.floats(entry)?, entry.components))).transpose()
 }
 
+/// Numbers of things, of such an array.
+fn integers(frame: &FrameFile, of: FieldAssociation, name: &str) -> Result<Option<Vec<i64>>, RenderError> {
+    frame.entry(of, name).map(|entry| frame.integers(entry)).transpose()
+}
+
 fn damaged_file(path: &Path, what: &str) -> RenderError {
     RenderError::Damaged { path: path.to_path_buf(), reason: what.into() }
 }
@@ -59,7 +64,7 @@ impl Frames {
         let entry =
             first.entry(FieldAssociation::Mesh, "Points").ok_or_else(|| damaged("the array Points is missing"))?;
         let rest = first.vectors(entry)?;
-        let of_points = numbers(&first, FieldAssociation::Points, "body")?.map(|found| found.0).unwrap_or_default();
+        let of_points = integers(&first, FieldAssociation::Points, "body")?.unwrap_or_default();
         let mut points = Vec::new();
         for alike in of_points.chunk_by(|a, b| a == b) {
             let begin = points.last().map_or(0, |range: &Range<usize>| range.end);
@@ -195,19 +200,19 @@ impl Frames {
 
     fn skin_states(&self, frame: &FrameFile, bodies: &[Body]) -> Result<Vec<Option<SkinState>>, RenderError> {
         let mut states: Vec<Option<SkinState>> = bodies.iter().map(|_| None).collect();
-        let elements = numbers(frame, FieldAssociation::Cells, "element")?.map(|found| found.0).unwrap_or_default();
+        let elements = integers(frame, FieldAssociation::Cells, "element")?.unwrap_or_default();
         for skin in self.skins.of_frame(frame)? {
             let wide = |places: &[Vec3]| places.iter().map(|place| DVec3::from(*place)).collect();
-            let number = |cell: &usize| elements.get(*cell).map_or(-1, |element| *element as i64);
+            let number = |cell: &usize| elements.get(*cell).copied().unwrap_or(-1);
             if let Some(state) = states.get_mut(skin.body as usize) {
                 *state = Some(SkinState {
                     rest: wide(&skin.rest),
                     points: wide(&skin.vertices),
-                    normals: Vec::new(),
-                    texture: Vec::new(),
+                    normals: wide(&skin.normals),
                     triangles: skin.faces.iter().map(|[a, b, c, _]| [*a, *b, *c]).collect(),
                     elements: skin.carriers.iter().map(|(cell, _)| number(cell)).collect(),
                     weights: skin.carriers.iter().map(|(_, weights)| *weights).collect(),
+                    texture: skin.texture,
                 });
             }
         }
@@ -232,11 +237,11 @@ impl NamesOfRows {
         homes: &[(u32, u32)],
         own: &[Cells],
     ) -> Result<Self, Option<RenderError>> {
-        let of_cells = |name| numbers(first, FieldAssociation::Cells, name).map_err(Some);
-        let nodes = numbers(first, FieldAssociation::Points, "node").map_err(Some)?;
+        let of_cells = |name| integers(first, FieldAssociation::Cells, name).map_err(Some);
+        let nodes = integers(first, FieldAssociation::Points, "node").map_err(Some)?;
         let nodes = nodes.map_or_else(
             || (0..first.points as u64).collect(),
-            |found| found.0.into_iter().map(|number| number as u64).collect(),
+            |found| found.into_iter().map(|number| number as u64).collect(),
         );
         let (elements, materials) = (of_cells("element")?, of_cells("material")?);
         let places = places(cells, whole).ok_or(None)?;
@@ -245,10 +250,10 @@ impl NamesOfRows {
         let mut made_of: Vec<Vec<u32>> = own.iter().map(|cells| vec![0; cells.len()]).collect();
         for (cell, place) in places.iter().enumerate() {
             let (body, at) = homes[*place];
-            if let Some((all, _)) = &elements {
+            if let Some(all) = &elements {
                 names[body as usize][at as usize] = all[cell] as u64;
             }
-            if let Some((all, _)) = &materials {
+            if let Some(all) = &materials {
                 made_of[body as usize][at as usize] = all[cell] as u32;
             }
         }

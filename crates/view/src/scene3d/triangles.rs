@@ -2,7 +2,7 @@
 
 use super::lent::Lent;
 use glam::Vec3;
-use sinew_pictures::render::{Camera, Colouring, Finish, Image, Layer, Lines, of_corners};
+use sinew_pictures::render::{Camera, Colouring, Finish, Image, Layer, Lines, of_layer};
 use std::sync::Arc;
 
 /// A corner of a triangle, as `scene.wgsl` takes it.
@@ -23,8 +23,6 @@ pub struct Surface<'a> {
     pub layer: Layer<'a>,
     /// Where its vertices were at rest (m); empty where nothing is drawn there.
     pub rest: &'a [Vec3],
-    /// Normals at its vertices, of length 1, where they are known; empty where faces say.
-    pub normals: &'a [Vec3],
     /// Which kind of tissue it is made of, where no value colours it.
     pub tissue: Option<u8>,
     /// A picture on it, in place of the tissue's own colour; `rest` are then its places there: right and down from its
@@ -109,13 +107,7 @@ pub fn kept(surface: &Surface<'_>, camera: &Camera) -> (Vec<Corner>, Vec<[u32; 2
 /// of that which is on it.
 fn add(surface: &Surface<'_>, picture: Option<usize>, camera: &Camera, corners: &mut Vec<Corner>) {
     let layer = &surface.layer;
-    let normals = match layer.flat {
-        None if surface.normals.len() == layer.vertices.len() => {
-            layer.faces.iter().map(|face| face.map(|point| surface.normals[point as usize])).collect()
-        }
-        None => of_corners(layer.vertices, layer.faces),
-        Some(normal) => vec![[normal; 4]; layer.faces.len()],
-    };
+    let normals = of_layer(layer);
     let common = number(layer.finish, surface.tissue.is_some(), picture.is_some()) << 13
         | u32::from(surface.tissue.unwrap_or(0)) << 17
         | u32::from(layer.cut) << 25;

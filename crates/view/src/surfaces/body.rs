@@ -286,10 +286,11 @@ impl Part {
             values: if self.values.is_empty() { Colouring::Nothing } else { Colouring::Vertices(&self.values) },
             finish: self.finish,
             lines: self.sides.as_deref().map_or(lines(self.wireframe), Lines::Sides),
+            normals: &self.normals,
             flat: self.flat,
             cut: self.cut,
         };
         let picture = self.picture.as_ref();
-        Surface { layer, rest: &self.rest, normals: &self.normals, tissue: self.tissue, picture, lent }
+        Surface { layer, rest: &self.rest, tissue: self.tissue, picture, lent }
     }
 }
