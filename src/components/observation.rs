@@ -162,7 +162,7 @@ pub struct Energies {
     /// Taken by the formula of implicit steps since the start, when counted.
     pub scheme_loss: Option<f64>,
     /// Of the work of loads, what impact and friction have taken since the start, and tools when they caught nodes;
-    /// none where nothing may touch.
+    /// none where nothing may touch, and in a static analysis.
     pub contact_loss: Option<f64>,
     /// Done by constraints since the start, when counted.
     pub constraint_work: Option<f64>,

@@ -119,7 +119,7 @@ fn what_contact_takes_is_a_column_where_something_may_touch() {
             let rows = table(place.path(), "energy.csv");
             assert!(rows.iter().all(|row| row.len() == columns.len()), "{}", run.name);
             let Some(column) = column else { continue };
-            let (lost, energy) = (summary.tools["wall"].loss, rows[0][1]);
+            let (lost, energy) = (summary.tools["wall"].loss.unwrap(), rows[0][1]);
             assert!(lost > 0.1 * energy, "{}: {lost} of {energy} J", run.name);
             near(run.name, rows[rows.len() - 1][column], lost, energy, 1e-12);
         }

@@ -2,6 +2,7 @@
 
 use super::{reference, scene};
 use sinew::components::Precision;
+use sinew::output::Folder;
 use sinew::scene::load;
 use sinew::scene::schema::Scene;
 use sinew::systems::Registry;
@@ -78,6 +79,32 @@ fn scenes_have_a_title_and_something_to_observe() {
     for (name, _) in SCENES {
         let scene = scene(name, &[]).scene;
         assert!(!scene.title.is_empty() && !scene.probes.is_empty(), "{name}");
+    }
+}
+
+/// What a run in f32 warns of: bodies and tools that are where others are, too, as fields are written.
+fn warned(name: &str, sets: &[&str]) -> Vec<String> {
+    let options = Options { backend: BackendChoice::Cpu, precision: Precision::F32, ..Options::default() };
+    let folder = tempfile::tempdir().unwrap();
+    let mut simulation = Simulation::new(&scene(name, sets), &options).unwrap();
+    simulation.write_into(&mut Folder::create(folder.path()).unwrap()).unwrap();
+    simulation.observe().unwrap();
+    simulation.finish().unwrap();
+    let warnings = simulation.summary("finished").unwrap().guards.warnings;
+    warnings.into_iter().map(|notice| format!("{} s: {}", notice.time, notice.message)).collect()
+}
+
+/// Until it slides, which takes longer to compute.
+#[test]
+fn the_needle_presses_in_without_a_warning() {
+    assert_eq!(warned("needle", &["duration=0.1"]), [""; 0]);
+}
+
+#[test]
+#[ignore = "long"]
+fn scenes_with_tools_run_to_their_end_without_a_warning() {
+    for (name, _) in SCENES.iter().filter(|(name, _)| !scene(name, &[]).scene.tools.is_empty()) {
+        assert_eq!(warned(name, &[]), [""; 0], "{name}");
     }
 }
 

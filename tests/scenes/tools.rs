@@ -1,7 +1,8 @@
 //! The scenes with tools.
 
 use super::{near, reference, scene};
-use sinew::Simulation;
+use sinew::components::Precision;
+use sinew::{Options, Simulation};
 
 /// What a quarter of the ball feels (N): Hertz' force on a half space, times 1.474 for a layer as thick as the ball's
 /// radius that is pressed by a tenth of it, from an axisymmetric solution of linear elasticity with the ball's own
@@ -54,7 +55,7 @@ fn the_probe_feels_depth_and_friction_and_leaves_nothing_behind() {
     assert!(drawn.force.y.abs() < 1e-3 * drawn.force.z && drawn.penetration < 1e-9, "{drawn:?}");
     simulation.finish().unwrap();
     let gone = simulation.tool("probe.tip").unwrap();
-    assert!(gone.nodes == 0 && gone.loss > 0.0 && gone.loss < gone.work, "{gone:?}");
+    assert!(gone.nodes == 0 && gone.loss.unwrap() > 0.0 && gone.loss.unwrap() < gone.work.unwrap(), "{gone:?}");
     let left = simulation.displacements("tissue").unwrap().iter().map(|u| u.length()).fold(0.0, f64::max);
     assert!(left < 1e-4, "{left} m");
 }
@@ -84,22 +85,39 @@ fn the_instrument_goes_through_its_trocar_and_strokes_tissue() {
     assert_eq!(simulation.tool("instrument.tip").unwrap().nodes, 0);
 }
 
+/// As the scene ships, in f32, which takes half of the time.
 #[test]
 fn the_ball_comes_to_rest_on_tissue_and_weighs_on_it() {
-    let mut simulation =
-        Simulation::new(&scene("ball_on_tissue", &["bodies.tissue.mesh.cells=(18, 12, 4)"]), &reference()).unwrap();
+    let options = Options { precision: Precision::F32, ..reference() };
+    comes_to_rest(&options, &[(1.0, 1e-4, 1e-3)]);
+}
+
+#[test]
+#[ignore = "long"]
+fn the_ball_is_ever_more_at_rest() {
+    comes_to_rest(&reference(), &[(1.0, 1e-4, 1e-3), (2.0, 1e-7, 1e-5)]);
+}
+
+/// `ends`: times (s), at which the ball goes no faster than so much (m/s), and feels its weight but for such a share.
+fn comes_to_rest(options: &Options, ends: &[(f64, f64, f64)]) {
+    let mut simulation = Simulation::new(&scene("ball_on_tissue", &["duration=2"]), options).unwrap();
     simulation.advance_to(0.03).unwrap();
     let falling = simulation.tool("glass.ball").unwrap();
     assert_eq!(falling.nodes, 0, "6 mm take 35 ms");
-    simulation.finish().unwrap();
-    let reading = simulation.tool("glass.ball").unwrap();
-    let free = reading.free.unwrap();
-    let weight = free.mass * 9.81;
-    assert!(near(reading.force.z, weight, 0.02), "{reading:?}");
-    assert!(free.velocity.length() < 5e-3 && reading.penetration < 1e-9 && reading.loss > 0.0, "{reading:?}");
-    // it has rolled a little way on, back in its dimple, and has sunk in, but not through
-    assert!(free.center.x > -0.0119 && free.center.x < 0.02 && free.center.y.abs() < 1e-6, "{free:?}");
-    assert!(free.center.z > 0.004 && free.center.z < 0.0078, "{free:?}");
+    for &(time, speed, bound) in ends {
+        simulation.advance_to(time).unwrap();
+        let reading = simulation.tool("glass.ball").unwrap();
+        let free = reading.free.unwrap();
+        let weight = free.mass * 9.81;
+        assert!(near(reading.force.z, weight, bound), "{time} s: {reading:?}");
+        assert!(reading.force.truncate().length() < bound * weight, "{time} s: {reading:?}");
+        // off the line of its way it would go faster and faster
+        assert!(free.velocity.length() < speed && free.center.y.abs() < 1e-9, "{time} s: {reading:?}");
+        assert!(reading.penetration < 1e-9 && reading.loss.unwrap() > 0.0, "{time} s: {reading:?}");
+        // it has rolled a little way on, back in its dimple, and has sunk in, but not through
+        assert!(free.center.x > -0.0115 && free.center.x < 0.02, "{time} s: {free:?}");
+        assert!(free.center.z > 0.004 && free.center.z < 0.0078, "{time} s: {free:?}");
+    }
 }
 
 /// Half of the slide, and the end: the needle is as deep all the time, and feels it but for a ripple from node to node.
@@ -119,11 +137,12 @@ fn the_needle_slides_on_the_surface_and_does_not_pierce_it() {
     let ripple = all.iter().map(|force| (force.z - mean.z).abs()).fold(0.0, f64::max) / mean.z;
     let ratio = -mean.x / mean.z;
     println!("mean {mean} N, ripple {ripple}, ratio {ratio}");
-    // friction of 0.1, and the wall in front of a tip that is as deep as it is thick: a mesh of cells two thirds as
-    // large has 2.03 mN and .475, half of the step 2.03 mN and .450, this one 2.00 mN and .453
-    assert!(near(mean.z, 2.02e-3, 0.02) && near(ratio, 0.464, 0.04), "{mean} {ratio}");
-    // the tip rests on few nodes: .30 here, .33 with half of the step, and not less on the finer mesh
-    assert!(ripple < 0.35, "{ripple}");
+    // friction of 0.1, and the wall in front of a needle that is nearly as deep as its radius: 4.62 mN and .159 here, half
+    // of the step has 4.62 mN and .162; between nodes it dips into faces, and a mesh of cells two thirds as large, into
+    // which it dips less, has 5.19 mN and .138
+    assert!(near(mean.z, 4.62e-3, 0.02) && near(ratio, 0.16, 0.04), "{mean} {ratio}");
+    // it rests on few nodes: .024 here, .031 with half of the step, .003 on the finer mesh
+    assert!(ripple < 0.04, "{ripple}");
     // the plane of its way is one of symmetry
     assert!(mean.y.abs() < 1e-9 * mean.z, "{mean}");
     simulation.finish().unwrap();

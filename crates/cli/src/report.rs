@@ -68,7 +68,7 @@ impl Page {
 fn equilibrium(found: &Equilibrium, heading: &str, page: &mut Page) {
     let scale = quantity(found.scale, "N");
     let rounding = match found.rounding > 0.1 * found.tolerance {
-        true => format!(", of it some {} by rounding", digits(found.rounding)),
+        true => format!("; rounding alone makes up to {}", digits(found.rounding)),
         false => String::new(),
     };
     page.row(
@@ -272,14 +272,17 @@ fn tools(summary: &Summary, page: &mut Page) {
             true => format!(", {} of it what it sucks", quantity(reading.suction.length(), "N")),
             false => String::new(),
         };
-        let (work, loss) = (quantity(reading.work, "J"), taken(reading.loss));
         let nodes = counted(reading.nodes as u64, "node");
         let slipped = match reading.slipped {
             0 => String::new(),
             count => format!(", {} slipped out", counted(count as u64, "node")),
         };
         let but = if is_sucking { ", the work of what it sucks left out" } else { "" };
-        format!("{name} feels ({x}, {y}, {z}) of {nodes}{slipped}{inside}{sucks}; it did {work}{but}, {loss}")
+        let spent = reading
+            .work
+            .zip(reading.loss)
+            .map_or(String::new(), |(work, loss)| format!("; it did {}{but}, {}", quantity(work, "J"), taken(loss)));
+        format!("{name} feels ({x}, {y}, {z}) of {nodes}{slipped}{inside}{sucks}{spent}")
     });
     page.rows("tools", lines.collect::<Vec<_>>());
 }
@@ -299,8 +302,9 @@ fn contacts(summary: &Summary, page: &mut Page) {
             true => format!(", the deepest {} inside", quantity(reading.penetration, "m")),
             false => String::new(),
         };
-        let (nodes, loss) = (counted(reading.nodes as u64, "node"), taken(reading.loss));
-        format!("{name} feels ({x}, {y}, {z}) and touches with {nodes}{inside}; {loss}")
+        let points = counted(reading.points as u64, "point");
+        let loss = reading.loss.map_or(String::new(), |loss| format!("; {}", taken(loss)));
+        format!("{name} feels ({x}, {y}, {z}) and touches with {points}{inside}{loss}")
     });
     page.rows("contacts", lines.collect::<Vec<_>>());
     if let Some(found) = &summary.surface_contact {

@@ -7,31 +7,67 @@ use bevy_ecs::prelude::*;
 
 /// The systems of contact that a world has.
 pub(super) fn in_use(world: &mut World) -> Vec<ContactInUse> {
-    tools(world).into_iter().chain(surfaces(world)).collect()
+    let of_tools = [tools(world), free_tools(world), grasps(world), suctions(world)];
+    of_tools.into_iter().chain([surfaces(world)]).flatten().collect()
 }
 
 fn tools(world: &mut World) -> Option<ContactInUse> {
-    let mut of = Vec::new();
-    let (mut lists, mut distances) = (0, 0);
-    let mut bodies: Vec<(String, String)> = Vec::new();
+    let (mut of, mut lists, mut distances) = (Vec::new(), 0, 0);
     for (label, contacts) in world.query::<(&Label, &ToolContacts)>().iter(world) {
         let tools: Vec<&str> = contacts.tools.iter().map(|contact| contact.tool.as_str()).collect();
-        let line = format!("{} nodes of {} may be touched by {}", contacts.rows.len(), label.0, tools.join(", "));
-        bodies.push((label.0.clone(), line));
+        of.push(format!("{} nodes of {} may be touched by {}", contacts.rows.len(), label.0, tools.join(", ")));
         lists += size_of_val(&contacts.rows[..]) + size_of_val(&contacts.masks[..]);
         distances += contacts.tools.iter().map(|contact| contact.geometry.bytes()).sum::<usize>();
     }
-    bodies.sort();
-    of.extend(bodies.into_iter().map(|(_, line)| line));
-    if of.is_empty() {
-        return None;
-    }
-    of.push(
+    let mut found = of_nodes("tool_contact", of, [lists, distances])?;
+    found.of.push(
         "each is looked at in every step, in the pass of the nodes; who is outside a ball around a tool costs least"
             .into(),
     );
+    Some(found)
+}
+
+/// What one system of tools may meet, nodes of each body and tool in a line; nothing of none.
+fn of_nodes(system: &str, mut of: Vec<String>, [lists, distances]: [usize; 2]) -> Option<ContactInUse> {
+    of.sort();
     let held = vec![("lists of these nodes", lists as u64), ("distances to tools", distances as u64)];
-    Some(ContactInUse { system: "tool_contact".into(), of, held, bytes_a_face: 0.0 })
+    (!of.is_empty()).then(|| ContactInUse { system: system.into(), of, held, bytes_a_face: 0.0 })
+}
+
+fn free_tools(world: &World) -> Option<ContactInUse> {
+    let tools = &world.get_resource::<FreeTools>()?.all;
+    let (mut of, mut lists) = (Vec::new(), 0);
+    for tool in tools {
+        for met in &tool.meets {
+            of.push(format!("{} nodes of {} may be touched by {}", met.rows.len(), met.name, tool.name));
+            lists += size_of_val(&met.rows[..]);
+        }
+    }
+    let distances = tools.iter().map(|tool| tool.geometry.bytes()).sum();
+    of_nodes("free_tool", of, [lists, distances])
+}
+
+fn grasps(world: &mut World) -> Option<ContactInUse> {
+    let (mut of, mut lists, mut distances) = (Vec::new(), 0, 0);
+    for (label, grasps) in world.query::<(&Label, &Grasps)>().iter(world) {
+        let tools: Vec<&str> = grasps.grasps.iter().map(|grasp| grasp.tool.tool.as_str()).collect();
+        of.push(format!("{} nodes of {} may be held by {}", grasps.rows.len(), label.0, tools.join(", ")));
+        lists += size_of_val(&grasps.rows[..]) + size_of_val(&grasps.masks[..]);
+        distances += grasps.grasps.iter().map(|grasp| grasp.tool.geometry.bytes()).sum::<usize>();
+    }
+    of_nodes("grasp", of, [lists, distances])
+}
+
+fn suctions(world: &mut World) -> Option<ContactInUse> {
+    let mut query = world.query::<(&Suction, &OfBody)>();
+    let world = &*world;
+    let of_body = |(suction, body): (&Suction, &OfBody)| {
+        let label = &world.get::<Label>(body.0)?.0;
+        Some(format!("{} faces of {label} may be in the mouth of {}", suction.faces.len(), suction.tool))
+    };
+    let mut of: Vec<String> = query.iter(world).filter_map(of_body).collect();
+    of.sort();
+    (!of.is_empty()).then(|| ContactInUse { system: "suction_mouth".into(), of, held: Vec::new(), bytes_a_face: 0.0 })
 }
 
 fn surfaces(world: &mut World) -> Option<ContactInUse> {

@@ -35,6 +35,32 @@ fn contact_says_what_it_looks_at_and_holds() {
 }
 
 #[test]
+fn what_moves_freely_holds_or_sucks_says_what_it_looks_at() {
+    let ball = "tools={\"ball\": (shape: Sphere(radius: 0.04), at: (0.05, 0.05, 0.15), free: (density: 1000))}";
+    let jaws = "tools={\"jaws\": (shape: Sphere(radius: 0.04), at: (0.05, 0.05, 0.11))}";
+    let tube = "tools={\"tube\": (shape: Tube(length: 0.1, inner: 0.03, outer: 0.035), at: (0.05, 0.05, 0.105))}";
+    for (tool, acts, system, words) in [
+        (ball, "contacts=[Tool(tool: \"ball\")]", "free_tool", " nodes of block may be touched by ball"),
+        (
+            jaws,
+            "attachments=[Grasp(tool: \"jaws\", closed: Step(), on: All)]",
+            "grasp",
+            " 64 nodes of block may be held by jaws",
+        ),
+        (
+            tube,
+            "suction=[(tool: \"tube\", pressure: 100, reach: 0.02)]",
+            "suction_mouth",
+            " 54 faces of block may be in the mouth of tube",
+        ),
+    ] {
+        let said = Workspace::new().done(&["explain", "block.ron", "--backend", "cpu", "--set", tool, "--set", acts]);
+        let of = said.split(&format!("\nContact by {system}\n")).nth(1).unwrap_or_else(|| panic!("{system}:\n{said}"));
+        assert!(of.split("\n\n").next().unwrap().contains(words), "{words:?} is not in\n{of}");
+    }
+}
+
+#[test]
 fn a_kernel_is_shown_whole() {
     let place = Workspace::new();
     let explain = |more: &[&str]| place.sinew(&[&["explain", "block.ron", "--set", "fuse=false"], more].concat());

@@ -138,6 +138,33 @@ fn a_scene_at_rest_shows_its_residual_and_how_it_came_down() {
     assert!(said.contains("inertial_mass") && said.contains("shaders/relaxation.wgsl"), "{said}");
 }
 
+/// Pseudo-steps are no motion: nobody has counted work. What touches is a point, of a face also.
+#[test]
+fn a_scene_at_rest_says_nothing_of_work_and_bodies_touch_with_points() {
+    let place = Workspace::new();
+    let lid = "tools={\"lid\": (shape: Box(size: (0.2, 0.2, 0.02)), at: (0.05, 0.05, 0.111), \
+               moves: [(displacement: (0, 0, -0.006), curve: Smooth(end: 0.1))])}";
+    let run = |more: &str| {
+        let sets = ["loads=[]", lid, "contacts=[Tool(tool: \"lid\", thin: true), Itself()]", more];
+        let sets: Vec<&str> = sets.into_iter().flat_map(|set| ["--set", set]).collect();
+        let said = place.done(&[&["run", "block.ron", "--backend", "cpu"], &sets[..]].concat());
+        assert!(said.contains("lid feels (") && said.contains("touches with 0 points"), "{said}");
+        (said, place.json("out/block/summary.json"))
+    };
+    let (said, summary) = run("analysis=Static()");
+    assert!(!said.contains("it did") && !said.contains("lost to") && !said.contains("gained by"), "{said}");
+    // in f32 it is told, and may be more than what is left
+    assert!(said.contains("; rounding alone makes up to "), "{said}");
+    for [of, name, what] in [["tools", "lid", "work"], ["tools", "lid", "loss"], ["contacts", "block", "loss"]] {
+        assert_eq!(summary[of][name].get(what), Some(&serde_json::Value::Null), "{of}.{name}.{what}");
+    }
+    assert_eq!(summary["energies"].get("contact_loss"), Some(&serde_json::Value::Null));
+    assert!(summary["tools"]["lid"]["force"][2].as_f64() > Some(0.1), "{}", summary["tools"]);
+    let (said, summary) = run("duration=0.2");
+    assert!(said.contains("; it did ") && said.contains("lost to impact and friction"), "{said}");
+    assert!(summary["tools"]["lid"]["work"].as_f64() > Some(0.0), "{}", summary["tools"]);
+}
+
 #[test]
 fn values_of_set_reach_the_run_and_the_copy_of_the_scene() {
     let place = Workspace::new();

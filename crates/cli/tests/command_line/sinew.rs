@@ -42,6 +42,22 @@ impl Workspace {
         Self::with_scene(SCENE)
     }
 
+    /// Writes a pyramid of 1 m with a corner in the origin, `pyramid.gltf`, whose numbers are in `pyramid.bin`.
+    pub fn write_pyramid(&self) {
+        let places = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let mut bytes: Vec<u8> = places.iter().flatten().flat_map(|number| number.to_le_bytes()).collect();
+        bytes.extend([0_u16, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3].iter().flat_map(|row| row.to_le_bytes()));
+        fs::write(self.path("pyramid.bin"), bytes).unwrap();
+        let text = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+"accessors": [
+  {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
+  {"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"}],
+"bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}],
+"buffers": [{"uri": "pyramid.bin", "byteLength": 72}]}"#;
+        fs::write(self.path("pyramid.gltf"), text).unwrap();
+    }
+
     /// The command, not begun yet.
     pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_sinew"));
