@@ -61,12 +61,13 @@ impl<'a, T: Scalar> NodeSlices<'a, T> {
 
     /// Displacement of a node (m), without what rounding has made of the sum of its steps: who corrects steps by where
     /// nodes are would push by that, m ulp(u)/Δt².
-    #[inline]
+    #[inline(always)] // with the instructions of whoever asks
     pub fn displacement(&self, row: usize) -> DVec3 {
         vector(self.u, row) - self.compensation.map_or(DVec3::ZERO, |compensation| vector(compensation, row))
     }
 
     /// Where a node would go.
+    #[inline(always)] // likewise
     pub fn foresee(&self, row: usize, coefficients: &IntegrationCoefficients<f64>) -> Foreseen {
         let mass = self.mass[row].to_f64();
         let damping = self.damping.map_or(0.0, |damping| damping[row].to_f64());
@@ -95,6 +96,7 @@ pub(super) fn note_farther(
 }
 
 /// The vector of a row.
+#[inline(always)] // likewise
 pub(super) fn vector<T: Scalar>(all: &[T], row: usize) -> DVec3 {
     vector_at(all, 3 * row)
 }

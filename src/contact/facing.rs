@@ -1,12 +1,11 @@
 //! The face that a point faces.
 
 use super::candidates::{Candidates, Kept, Listed, NEARER, ON_IT};
-use super::rims::AtRim;
-use super::shortlist::{MOST, Shortlist, Stays};
-use super::surfaces::{Placed, Point, Surfaces};
+use super::shortlist::{Lately, MOST, Shortlist, Stays};
+use super::surfaces::{OF_ANGLES, Placed, Point, Surfaces};
 use crate::mesh::OnTriangle;
 use glam::DVec3;
-use smallvec::{SmallVec, smallvec};
+use std::f64::consts::FRAC_PI_2;
 
 /// Surfaces face one another where the cosine between their normals is below this.
 pub const TURNED_AWAY: f64 = 0.2;
@@ -38,10 +37,12 @@ pub struct Facing {
 pub struct Own(Option<(u32, DVec3)>);
 
 impl Own {
-    fn normal(&mut self, surfaces: &Surfaces, now: Placed<'_>, triangle: u32) -> DVec3 {
-        match self.0.filter(|(known, _)| *known == triangle) {
-            Some((_, normal)) => normal,
-            None => self.0.insert((triangle, surfaces.normal_now(now, triangle))).1,
+    /// A point's own normal: that of the triangle that it is on, or of its node.
+    fn of(&mut self, surfaces: &Surfaces, now: Placed<'_>, point: &Point) -> DVec3 {
+        match (point.triangle, self.0) {
+            (None, _) => surfaces.normal_of_node(now, point.nodes[0]),
+            (Some(triangle), Some((known, normal))) if known == triangle => normal,
+            (Some(triangle), _) => self.0.insert((triangle, surfaces.normal_now(now, triangle))).1,
         }
     }
 }
@@ -66,15 +67,16 @@ impl Surfaces {
     /// What a point faces whose shortlist is known: where all triangles that matter but one at most are far off, beside
     /// another or behind a rim, and the point is in front of that one, as for most. Whether that is all there is to it.
     /// Nothing has come nearer since lists were made than by `nearer`, and faces are looked at that are no farther than
-    /// `reach` (m); `edge` is the length of an edge (m), of a triangle's body or the point's.
-    #[inline]
+    /// `reach` (m), nor later by `more`; `edge` is the length of an edge (m), of a triangle's body or the point's. As
+    /// long as nodes hardly move, the others stay where they are, and one is looked at alone.
+    #[inline(always)] // with the instructions of whoever asks
     pub fn faced_at_a_glance(
         &self,
-        (now, point, short): (Placed<'_>, &Point, &Shortlist),
-        (nearer, reach, edge): (f64, impl Fn(u32) -> f64, impl Fn(u32) -> f64),
-        (faced, own): (&mut Faced, &mut Own),
+        (now, point, (short, listed)): (Placed<'_>, &Point, (&mut Shortlist, &[u32])),
+        (nearer, (of_reach, more), edge): (f64, (impl Fn(u32) -> f64, f64), impl Fn(u32) -> f64),
+        (lately, faced, own): (Lately, &mut Faced, &mut Own),
     ) -> bool {
-        let Some(triangles) = short.triangles() else { return false };
+        let Some((triangles, first)) = short.triangles_now(lately) else { return false };
         (faced.first, faced.second, faced.wakes) = (None, None, short.wakes);
         let (mut only, mut beside, mut seen) = (None, 0_u16, [(0.0, 0); MOST]);
         if triangles.is_empty() {
@@ -86,7 +88,7 @@ impl Surfaces {
             let distance = at.distance(found.at);
             seen[number] = (distance, found.part);
             faced.wakes = faced.wakes.min(distance - nearer);
-            let within = [self.depths[triangle as usize], reach(triangle)];
+            let within = [self.depths[triangle as usize], of_reach(triangle)];
             if distance > within[0] && distance > within[1] {
                 continue;
             }
@@ -102,29 +104,54 @@ impl Surfaces {
             // those that show it are not all in shortlists; beyond a rim there are none, and what is outside there is
             // so as far as it is away
             let is_told = others.any(|(&other, _)| self.shares_part(other, triangle, part))
-                || seen[number].0 > reach(triangle) && self.is_outside((now, at), (triangle, part))
+                || seen[number].0 > of_reach(triangle) && self.is_outside((now, at), (triangle, part))
                 || self.goes_on_nearer((now.places, at), (triangle, part), farthest);
             if !is_told {
                 return false;
             }
         }
-        let Some((number, OnTriangle { at: nearest, weights, .. }, [depth, reach])) = only else { return true };
-        let normal = self.normal_now(now, triangles[number]);
+        let Some((place, OnTriangle { at: nearest, weights, .. }, [depth, reach])) = only else { return true };
+        let (triangle, number) = (triangles[place], first + place);
+        if triangles.len() > 1 && short.may_be_alone(lately) {
+            let (gone, nearest) = (lately.farther, seen[place].0);
+            let stays_away = |(&other, &(distance, part)): (&u32, &(f64, usize))| {
+                let within = f64::max(self.depths[other as usize], of_reach(other) + more);
+                other == triangle
+                    || distance - gone > f64::max(within, nearest + gone)
+                    || distance - gone > ON_IT * edge(other)
+                        && nearest + gone < NEARER * (distance - gone)
+                        && self.shares_part(triangle, other, part)
+                        && OnTriangle::stays_nearest(at, self.corners(now.places, other), part, gone)
+            };
+            let is_alone = triangles.iter().zip(&seen).all(stays_away);
+            short.note_alone(is_alone.then_some(number), lately);
+        }
+        let normal = self.normal_now(now, triangle);
         let gap = (at - nearest).dot(normal);
         if !(gap >= -depth && gap <= reach) || normal == DVec3::ZERO {
             return true;
         }
-        let facing = Facing { triangle: triangles[number], weights, at: nearest, normal, gap };
-        if short.may_have_rim(number) && self.is_at_rim(now, &facing, edge(facing.triangle)) {
-            return false;
+        let mut facing = Facing { triangle, weights, at: nearest, normal, gap };
+        let mut of_point = None;
+        if short.may_have_rim(number) {
+            let mut ask = || *of_point.get_or_insert_with(|| own.of(self, now, point));
+            // of its own body it may be a face beside its own
+            let is_beside = self.bodies[facing.triangle as usize] == point.body && normal.dot(ask()) >= TURNED_AWAY;
+            let flank = match is_beside {
+                true => None,
+                false => self.flank(now, (point, ask), (listed, edge(facing.triangle)), facing),
+            };
+            let Some(flank) = flank else { return true };
+            facing = flank;
         }
-        let is_turned_away = match point.triangle {
-            Some(triangle) => normal.dot(own.normal(self, now, triangle)) < TURNED_AWAY,
+        let is_turned_away = match (of_point, point.triangle) {
+            (Some(own), _) => facing.normal.dot(own) < TURNED_AWAY,
+            (None, Some(_)) => normal.dot(own.of(self, now, point)) < TURNED_AWAY,
             // of one at a rim, with walls beside it, its own normal is asked
-            None => {
+            (None, None) => {
                 short.is_turned_away(number)
                     || self.all_turned_away(now, point.nodes[0], normal)
-                    || normal.dot(self.normal_of_node(now, point.nodes[0])) < TURNED_AWAY
+                    || normal.dot(own.of(self, now, point)) < TURNED_AWAY
             }
         };
         if is_turned_away {
@@ -192,15 +219,18 @@ impl Surfaces {
                     false => candidates.nearest(place).1 - listed.nearer,
                 };
                 around.clear();
+                let mut of_node = None;
                 if point.triangle.is_none() {
                     let of = |&own: &u32| (self.normal_now(now, own), self.turns(now, own, stays.moved));
                     around.extend(self.around(point.nodes[0]).iter().map(of));
+                    of_node = Some(self.turns_of_node(now, point.nodes[0], around, stays.moved));
                 }
                 let turned = |place: usize| {
                     let triangle = listed.triangles[place];
                     let (normal, turn) = (self.normal_now(now, triangle), self.turns(now, triangle, stays.moved));
-                    let stays_so = |(own, of_own): &(DVec3, f64)| own.dot(normal) < -(of_own + turn + of_own * turn);
-                    point.triangle.is_none() && around.iter().all(stays_so)
+                    let cosine = |(own, of_own): &(DVec3, f64)| own.dot(normal) + of_own + turn + of_own * turn;
+                    let all_stay_so = || around.iter().all(|of_own| cosine(of_own) < 0.0);
+                    of_node.is_some_and(|of_node| all_stay_so() || cosine(&of_node) < TURNED_AWAY)
                 };
                 let rims = |place: usize| self.may_have_rim(now, listed.triangles[place], stays.moved);
                 *short = Shortlist::of(listed.triangles, away, nearest, (turned, rims));
@@ -237,6 +267,22 @@ impl Surfaces {
         let [a, b, c] = self.corners(now.places, triangle);
         let (one, other) = (b - a, c - a);
         2.0 * moved * (one.length() + other.length() + moved) / one.cross(other).length()
+    }
+
+    /// The unit normal of a node, and by how much it changes at most, likewise: of triangles around it with these
+    /// normals n and by how much they turn. The sum N of a n, a the angles, changes by E = Σ δa + (a + δa) δn at most,
+    /// where a turns by no more than its sides of lengths b and c do, δa = π/2 m (1/b + 1/c), and what is as long as
+    /// one turns by 2 E/|N|; with what angles are known to.
+    fn turns_of_node(&self, now: Placed<'_>, node: u32, around: &[(DVec3, f64)], moved: f64) -> (DVec3, f64) {
+        let (mut sum, mut change) = (DVec3::ZERO, 0.0);
+        for (&triangle, &(normal, turn)) in self.around(node).iter().zip(around) {
+            let (angle, [b, c]) = self.angle_at(now.places, triangle, node);
+            // what is shorter may turn anywhere
+            let of_angle = if moved < f64::min(b, c) { FRAC_PI_2 * moved * (1.0 / b + 1.0 / c) } else { f64::INFINITY };
+            sum += normal * angle;
+            change += of_angle + (angle + of_angle) * turn;
+        }
+        (sum.normalize_or_zero(), 2.0 * change / sum.length() + OF_ANGLES)
     }
 
     /// Whether a direction is turned away from the normals of all triangles around a node: then it is from the node's
@@ -324,17 +370,10 @@ impl<E: Fn(u32) -> f64> Way<'_, E> {
     fn beside_rims(&self, facing: Facing, own: DVec3) -> Option<Facing> {
         let Self { surfaces, now, point, edge, .. } = *self;
         // of its own body it may be a face beside its own
-        let is_own = surfaces.bodies[facing.triangle as usize] == point.body;
-        let edge = edge(facing.triangle);
-        if is_own && facing.normal.dot(own) >= TURNED_AWAY || !surfaces.is_at_rim(now, &facing, edge) {
+        if surfaces.bodies[facing.triangle as usize] == point.body && facing.normal.dot(own) >= TURNED_AWAY {
             return Some(facing);
         }
-        let of_triangles: SmallVec<[DVec3; 8]> = match point.triangle {
-            Some(_) => smallvec![own],
-            None => surfaces.around(point.nodes[0]).iter().map(|&own| surfaces.normal_now(now, own)).collect(),
-        };
-        let (at, listed) = (point.place(now.places), self.triangles);
-        surfaces.flank(now, &AtRim { at, own, of_triangles: &of_triangles, listed, edge }, facing)
+        surfaces.flank(now, (point, || own), (self.triangles, edge(facing.triangle)), facing)
     }
 
     /// What is in its way: where only one was seen, that it is turned away is all that is asked.

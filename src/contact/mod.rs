@@ -26,6 +26,6 @@ pub use law::{Beginning, Contact, ContactSet};
 pub use lists::{Finder, Lists};
 pub use neighbourhoods::Neighbourhoods;
 pub use parts::Parts;
-pub use shortlist::{Shortlist, Stays};
+pub use shortlist::{Lately, Shortlist, Stays};
 pub use surfaces::{DEEPEST, Near, Placed, Point, Surfaces, triangles_of};
 pub use ties::{Tie, TieSet};

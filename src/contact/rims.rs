@@ -2,10 +2,10 @@
 
 use super::candidates::ON_IT;
 use super::facing::{ALIKE, Facing, TURNED_AWAY};
-use super::surfaces::{Placed, Surfaces};
+use super::surfaces::{Placed, Point, Surfaces};
 use crate::mesh::OnTriangle;
 use glam::DVec3;
-use smallvec::SmallVec;
+use smallvec::{SmallVec, smallvec};
 
 /// Flanks of a rim where the cosine between the normals is below this (60°).
 const RIM: f64 = 0.5;
@@ -14,26 +14,6 @@ const RIM: f64 = 0.5;
 /// at it where it is below the second (60°).
 const FLUSH: f64 = -0.99;
 const LOOKS: f64 = -0.5;
-
-/// A point that may be at a rim.
-pub(super) struct AtRim<'a> {
-    /// Where it is (m).
-    pub at: DVec3,
-    /// Its own unit normal, and those of its own triangles.
-    pub own: DVec3,
-    pub of_triangles: &'a [DVec3],
-    /// The triangles that may be near it, ascending.
-    pub listed: &'a [u32],
-    /// The length of an edge (m), the smaller of its body's and the face's.
-    pub edge: f64,
-}
-
-impl AtRim<'_> {
-    /// The least cosine between a normal and one of its own triangles.
-    fn least(&self, normal: DVec3) -> f64 {
-        self.of_triangles.iter().map(|own| own.dot(normal)).fold(1.0, f64::min)
-    }
-}
 
 impl Surfaces {
     /// What a point faces that sees a face near its rim: the flank there that it faces more, as a plane that ends at
@@ -45,28 +25,48 @@ impl Surfaces {
     /// too, as high above its rim as rounding has it, or what is sunk in. Where the point is at a rim of its own that
     /// looks at both, as at a joint that is slid across, it is the flank that lies flush with one of its own faces; of
     /// two that do neither is in its way, since less than a twentieth of an edge of one is before the other.
-    pub(super) fn flank(&self, now: Placed<'_>, point: &AtRim<'_>, facing: Facing) -> Option<Facing> {
-        let &AtRim { at, own, listed, edge, .. } = point;
+    ///
+    /// Whether it is at a rim is all that is asked of most: only then is it asked for the point's own normal. `listed`
+    /// are the triangles that may be near it, ascending, `edge` is the length of an edge (m), the smaller of its body's
+    /// and the face's.
+    pub(super) fn flank(
+        &self,
+        now: Placed<'_>,
+        (point, own): (&Point, impl FnOnce() -> DVec3),
+        (listed, edge): (&[u32], f64),
+        facing: Facing,
+    ) -> Option<Facing> {
+        let flanks = self.flanks(now, &facing, edge);
+        if flanks.is_empty() {
+            return Some(facing);
+        }
+        let (at, own) = (point.place(now.places), own());
+        // of its own triangles
+        let normals: SmallVec<[DVec3; 8]> = match point.triangle {
+            Some(_) => smallvec![own],
+            None => self.around(point.nodes[0]).iter().map(|&of_point| self.normal_now(now, of_point)).collect(),
+        };
+        let least = |normal: DVec3| normals.iter().map(|of_point| of_point.dot(normal)).fold(1.0, f64::min);
         let outside_of = |triangle: u32| {
             let normal = self.normal_now(now, triangle);
             (normal, (at - self.corners(now.places, triangle)[0]).dot(normal))
         };
         let deep = |triangle: u32| -f64::min(ALIKE * edge, self.depths[triangle as usize]);
         let (normal, outside) = outside_of(facing.triangle);
-        let (toward, toward_least) = (own.dot(normal), point.least(normal));
+        let (toward, toward_least) = (own.dot(normal), least(normal));
         // the one that it faces most, of equal ones the nearest, how much what it faces least, and those that see it
-        let (mut most, mut best, mut least) = (None, f64::INFINITY, f64::NEG_INFINITY);
+        let (mut most, mut best, mut nearest_to_it) = (None, f64::INFINITY, f64::NEG_INFINITY);
         let mut seen_by: SmallVec<[u32; 8]> = SmallVec::new();
         if outside > ON_IT * edge {
             seen_by.push(facing.triangle);
         }
-        for (other, of_other) in self.flanks(now, &facing, edge) {
+        for (other, of_other) in flanks {
             let distance = at.distance(OnTriangle::nearest(at, self.corners(now.places, other)).at);
             // what is as near is in every list
             if distance > self.depths[other as usize] || listed.binary_search(&other).is_err() {
                 continue;
             }
-            let (turned, turned_least) = (own.dot(of_other), point.least(of_other));
+            let (turned, turned_least) = (own.dot(of_other), least(of_other));
             if outside_of(other).1 > ON_IT * edge {
                 seen_by.push(other);
             }
@@ -76,7 +76,7 @@ impl Surfaces {
                     return None;
                 }
             } else if toward_least > FLUSH || turned_least > LOOKS {
-                least = f64::max(least, turned);
+                nearest_to_it = f64::max(nearest_to_it, turned);
                 if turned < toward - TURNED_AWAY && turned + distance / edge < best {
                     (most, best) = (Some(other), turned + distance / edge);
                 }
@@ -85,7 +85,7 @@ impl Surfaces {
         let triangle = match most {
             Some(other) => other,
             // it is the face itself, not the round about its rim
-            None if toward < least - TURNED_AWAY => facing.triangle,
+            None if toward < nearest_to_it - TURNED_AWAY => facing.triangle,
             None => return Some(facing),
         };
         let (normal, gap) = outside_of(triangle);
@@ -119,25 +119,37 @@ impl Surfaces {
 
     /// Whether a place on a triangle is at a rim.
     pub(super) fn is_at_rim(&self, now: Placed<'_>, facing: &Facing, edge: f64) -> bool {
-        self.flanks(now, facing, edge).next().is_some()
+        !self.flanks(now, facing, edge).is_empty()
     }
 
-    /// The triangles, with their normals, that fall off from one at a rim near a place on it; some of them twice.
-    fn flanks<'a>(&'a self, now: Placed<'a>, facing: &Facing, edge: f64) -> impl Iterator<Item = (u32, DVec3)> + 'a {
+    /// The triangles, with their normals, that fall off from one at a rim near a place on it.
+    #[inline(always)] // with the instructions of whoever asks
+    fn flanks(&self, now: Placed<'_>, facing: &Facing, edge: f64) -> SmallVec<[(u32, DVec3); 8]> {
         let &Facing { triangle, at, weights, .. } = facing;
-        let near = ALIKE * edge;
+        let (near, mut found) = (ALIKE * edge, SmallVec::new());
         let [a, b, c] = self.corners(now.places, triangle);
-        let (twice, opposite) = ((b - a).cross(c - a).length(), [c - b, a - c, b - a]);
-        let is_near_side = (0..3).any(|corner| weights[corner] * twice < near * opposite[corner].length());
-        let nodes = if is_near_side { &self.triangles[triangle as usize][..] } else { &[] };
+        let (twice, opposite) = ((b - a).cross(c - a).length_squared(), [c - b, a - c, b - a]);
+        let is_near = |corner: usize| weights[corner].powi(2) * twice < near * near * opposite[corner].length_squared();
+        if !(0..3).any(is_near) {
+            return found;
+        }
         let (normal, middle) = (self.normal_now(now, triangle), (a + b + c) / 3.0);
-        let around = nodes.iter().flat_map(|&node| self.around(node)).filter(move |other| **other != triangle);
-        around.filter_map(move |&other| {
-            let (of_other, corners) = (self.normal_now(now, other), self.corners(now.places, other));
-            let falls_off = of_other.dot(normal) < RIM && of_other.dot(middle - corners[0]) < 0.0;
-            let is_near = falls_off && OnTriangle::nearest(at, corners).at.distance(at) < near;
-            (is_near && of_other != DVec3::ZERO).then_some((other, of_other))
-        })
+        for &node in &self.triangles[triangle as usize] {
+            for &other in self.around(node) {
+                let of_other = self.normal_now(now, other);
+                // itself does not turn off; two nodes have some
+                let turns_off = of_other.dot(normal) < RIM && of_other != DVec3::ZERO;
+                if !turns_off || found.iter().any(|of| of.0 == other) {
+                    continue;
+                }
+                let corners = self.corners(now.places, other);
+                let falls_off = of_other.dot(middle - corners[0]) < 0.0;
+                if falls_off && OnTriangle::nearest(at, corners).at.distance(at) < near {
+                    found.push((other, of_other));
+                }
+            }
+        }
+        found
     }
 }
 

@@ -19,6 +19,9 @@ pub struct Shortlist {
     rims: u16,
     /// How many, or [`NONE`].
     count: u8,
+    /// The number of the one that alone matters, or [`NONE`], until nodes have [gone](Lately::gone) so far (m).
+    alone: u8,
+    until: f32,
 }
 
 /// How much may change while a shortlist holds.
@@ -30,9 +33,26 @@ pub struct Stays {
     pub reach: f64,
 }
 
+/// How far nodes have gone against each other lately.
+#[derive(Clone, Copy, Debug)]
+pub struct Lately {
+    /// Step by step, since some time (m); infinite where steps do not tell.
+    pub gone: f64,
+    /// So much farther they may go where one triangle alone is to matter (m).
+    pub farther: f64,
+}
+
 impl Shortlist {
     /// Of a point that has not been looked at.
-    pub const UNKNOWN: Self = Self { wakes: f64::INFINITY, triangles: [0; MOST], turned: 0, rims: 0, count: NONE };
+    pub const UNKNOWN: Self = Self {
+        wakes: f64::INFINITY,
+        triangles: [0; MOST],
+        turned: 0,
+        rims: 0,
+        count: NONE,
+        alone: NONE,
+        until: f32::NEG_INFINITY,
+    };
 
     /// Of a list of triangles, without those that stay away, each of which is so far (m), and with which of the others
     /// stay turned away, and which may have a rim; all by their places in the list.
@@ -67,6 +87,34 @@ impl Shortlist {
     #[inline]
     pub(super) fn triangles(&self) -> Option<&[u32]> {
         self.triangles.get(..usize::from(self.count))
+    }
+
+    /// The triangles that matter now, if they are known, and the number of the first.
+    #[inline(always)] // with the instructions of whoever asks
+    pub(super) fn triangles_now(&self, lately: Lately) -> Option<(&[u32], usize)> {
+        let alone = usize::from(self.alone);
+        match self.triangles.get(alone..alone + 1) {
+            Some(one) if lately.gone <= f64::from(self.until) => Some((one, alone)),
+            _ => Some((self.triangles()?, 0)),
+        }
+    }
+
+    /// Whether it may be asked whether one alone matters.
+    #[inline(always)] // likewise
+    pub(super) fn may_be_alone(&self, lately: Lately) -> bool {
+        lately.gone.is_finite() && lately.gone > f64::from(self.until)
+    }
+
+    /// Notes which alone matters, by its number, or that none does, until nodes have gone farther.
+    #[inline(always)] // likewise
+    pub(super) fn note_alone(&mut self, number: Option<usize>, lately: Lately) {
+        self.alone = number.map_or(NONE, |number| number as u8);
+        self.until = ((lately.gone + lately.farther) as f32).next_down();
+    }
+
+    /// Forgets that, for it is counted anew how far nodes go.
+    pub fn count_anew(&mut self) {
+        (self.alone, self.until) = (NONE, f32::NEG_INFINITY);
     }
 
     /// Whether the one of that number stays turned away from all around the point, a node.

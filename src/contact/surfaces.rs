@@ -19,6 +19,9 @@ pub fn triangles_of([a, b, c, d]: [u32; 4]) -> impl Iterator<Item = [u32; 3]> {
     std::iter::once(first).chain(second)
 }
 
+/// What the normal of a node is known to.
+pub(super) const OF_ANGLES: f64 = 1e-4;
+
 /// No triangle.
 pub(super) const NONE: u32 = u32::MAX;
 
@@ -79,7 +82,7 @@ impl Point {
     }
 
     /// Its nodes and their weights.
-    #[inline]
+    #[inline(always)] // with the instructions of whoever asks
     pub fn slices(&self) -> (&[u32], &[f64]) {
         let count = if self.triangle.is_some() { 4 } else { 1 };
         (&self.nodes[..count], &self.weights[..count])
@@ -93,7 +96,7 @@ impl Point {
     }
 
     /// Where it is (m).
-    #[inline]
+    #[inline(always)] // likewise
     pub fn place(&self, places: &[DVec3]) -> DVec3 {
         if self.triangle.is_none() {
             return places[self.nodes[0] as usize];
@@ -154,21 +157,21 @@ impl Surfaces {
     }
 
     /// Where its corners are (m).
-    #[inline]
+    #[inline(always)] // with the instructions of whoever asks
     pub fn corners(&self, places: &[DVec3], triangle: u32) -> [DVec3; 3] {
         let [a, b, c] = self.triangles[triangle as usize];
         [places[a as usize], places[b as usize], places[c as usize]]
     }
 
     /// The unit normal of a triangle; zero of one without area.
-    #[inline]
+    #[inline(always)] // with the instructions of whoever asks
     pub fn normal(&self, places: &[DVec3], triangle: u32) -> DVec3 {
         let [a, b, c] = self.corners(places, triangle);
         (b - a).cross(c - a).normalize_or_zero()
     }
 
     /// The same where they may be known.
-    #[inline]
+    #[inline(always)] // with the instructions of whoever asks
     pub(super) fn normal_now(&self, now: Placed<'_>, triangle: u32) -> DVec3 {
         now.normals.get(triangle as usize).copied().unwrap_or_else(|| self.normal(now.places, triangle))
     }
@@ -219,15 +222,21 @@ impl Surfaces {
     }
 
     /// The normal of a node, weighted with angles, to 1e-4: what is asked of it is to which side things are.
+    #[inline(always)] // with the instructions of whoever asks
     pub fn normal_of_node(&self, now: Placed<'_>, node: u32) -> DVec3 {
-        let at = now.places[node as usize];
-        let of_triangle = |&triangle: &u32| {
-            let corners = self.triangles[triangle as usize];
-            let place = corners.iter().position(|&corner| corner == node).unwrap_or(0);
-            let [b, c] = [1, 2].map(|next| now.places[corners[(place + next) % 3] as usize] - at);
-            self.normal_now(now, triangle) * angle(b.cross(c).length(), b.dot(c))
-        };
+        let of_triangle =
+            |&triangle: &u32| self.normal_now(now, triangle) * self.angle_at(now.places, triangle, node).0;
         self.around(node).iter().map(of_triangle).sum::<DVec3>().normalize_or_zero()
+    }
+
+    /// The angle of a triangle at a node, to 1e-5, and the lengths of its sides there (m).
+    #[inline(always)] // likewise
+    pub(super) fn angle_at(&self, places: &[DVec3], triangle: u32, node: u32) -> (f64, [f64; 2]) {
+        let corners = self.triangles[triangle as usize];
+        let place = corners.iter().position(|&corner| corner == node).unwrap_or(0);
+        let sides = [1, 2].map(|next| places[corners[(place + next) % 3] as usize] - places[node as usize]);
+        let [b, c] = sides;
+        (angle(b.cross(c).length(), b.dot(c)), sides.map(DVec3::length))
     }
 
     /// The triangles that may be asked for when it is found what points face among some triangles, and their corners;

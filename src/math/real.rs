@@ -108,6 +108,7 @@ pub trait Scalar: Real + PartialOrd + Default + bytemuck::Pod {
 }
 
 /// The vector that begins with a number of a column, in f64.
+#[inline(always)] // with the instructions of whoever asks
 pub(crate) fn vector_at<T: Scalar>(all: &[T], at: usize) -> DVec3 {
     DVec3::new(all[at].to_f64(), all[at + 1].to_f64(), all[at + 2].to_f64())
 }

@@ -3,14 +3,19 @@
 use super::motion::update_normals;
 use super::{Surface, SurfaceContacts};
 use crate::backend::cpu::Cpu;
-use crate::contact::{Faced, Kept, Listed, Own, Placed, Shortlist, Stays};
+use crate::contact::{Faced, Kept, Lately, Listed, Own, Placed, Shortlist, Stays};
 
 /// Points that a task looks at.
 const POINTS_A_TASK: usize = 128;
 
-/// Where more than one of so many points goes through its list, the normals of all that is near are found beforehand:
-/// else few are asked for.
+/// The normals of all that is near are found beforehand where there are no more triangles than so many for each point
+/// that is awake, or more than one of so many points goes through its list: else few are asked for.
 const KNOWN: usize = 8;
+
+/// One triangle of a shortlist alone is to matter while nodes move so much of how far shortlists may serve; and it is
+/// counted anew how far nodes have gone when that is so many times as much, for it is kept in few digits.
+const ALONE: f64 = 0.25;
+const COUNTED: f64 = 1000.0;
 
 /// Some points that are awake, by their places in the lists, what is kept there of these and of those between, and what
 /// is made of what they face.
@@ -37,6 +42,8 @@ struct Looking<'a> {
     /// How far nodes have moved since it was looked last whether shortlists hold, and how much farther faces may be
     /// looked at (m).
     stays: Stays,
+    /// How far they have gone lately.
+    lately: Lately,
 }
 
 /// Who is awake: points in the lists that may be near something, as far as nodes have moved since. Whether there are
@@ -69,11 +76,12 @@ pub(super) fn face<M: Send>(
     mut made: impl Iterator<Item = M>,
     tell: impl Fn(&SurfaceContacts, u32, &Faced, &mut M) + Sync + Send,
 ) {
-    let [nearer, lately] = [&contacts.surface.motion.lists, &contacts.surface.motion.shortlists].map(|mark| mark.moved);
+    let [nearer, moved] = [&contacts.surface.motion.lists, &contacts.surface.motion.shortlists].map(|mark| mark.moved);
     let surface = &mut contacts.surface;
     let awake = std::mem::take(&mut surface.awake);
     let unknown = awake.iter().filter(|&&place| !surface.shortlists[place as usize].is_known()).count();
-    let has_normals = KNOWN * unknown > awake.len() || !surface.crossings.near.is_empty();
+    let are_few = surface.near.triangles.len() <= KNOWN * awake.len();
+    let has_normals = are_few || KNOWN * unknown > awake.len() || !surface.crossings.near.is_empty();
     if has_normals {
         update_normals(surface, cpu);
     }
@@ -81,16 +89,22 @@ pub(super) fn face<M: Send>(
     let mut reaches = std::mem::take(&mut surface.reaches);
     let mut shortlists = std::mem::take(&mut surface.shortlists);
     let mut wake = std::mem::take(&mut surface.wake);
+    let mut lately = Lately { gone: contacts.surface.motion.gone, farther: ALONE * contacts.may_move() };
+    // what is no number does not tell
+    if !lately.gone.is_finite() || lately.gone > COUNTED * lately.farther {
+        shortlists.iter_mut().for_each(Shortlist::count_anew);
+        (lately.gone, contacts.surface.motion.gone) = (f64::INFINITY, 0.0);
+    }
     kept.resize_with(kept.len().max(awake.len().div_ceil(POINTS_A_TASK)), Kept::default);
     reaches.clear();
     let meetings = contacts.meetings.iter();
     reaches.extend(meetings.map(|meeting| meeting.map_or(reach, |meeting| contacts.reach_of(&meeting, reach))));
-    let stays = Stays { moved: lately, reach: contacts.surface.stays.reach - reach };
+    let stays = Stays { moved, reach: contacts.surface.stays.reach - reach };
     let farthest = contacts.farthest(reach);
     let surface = &contacts.surface;
     let normals = if has_normals { &surface.normals[..] } else { &[] };
     let now = Placed { places: &surface.places, normals };
-    let looking = Looking { contacts, now, reaches: &reaches, nearer, farthest, stays };
+    let looking = Looking { contacts, now, reaches: &reaches, nearer, farthest, stays, lately };
     let mut left = (0, &mut shortlists[..], &mut wake[..]);
     let chunks = awake.chunks(POINTS_A_TASK).zip(&mut kept);
     let tasks = chunks.zip(&mut made).map(|((places, kept), made)| {
@@ -102,15 +116,31 @@ pub(super) fn face<M: Send>(
         left = (end, shortlists_left, wake_left);
         Awake { places, first, shortlists, wake, kept, made }
     });
-    cpu.for_each(tasks, |awake| looking.face(awake, &tell));
+    cpu.for_each(tasks, |awake| cpu.dispatch(Face { looking: &looking, awake, tell: &tell }));
     let surface = &mut contacts.surface;
     let first = awake.iter().map(|&place| wake[place as usize]).fold(surface.first_wake, f64::min);
     (surface.awake, surface.kept_by_task, surface.reaches) = (awake, kept, reaches);
     (surface.shortlists, surface.wake, surface.first_wake) = (shortlists, wake, first);
 }
 
+/// The task of finding what some points face.
+struct Face<'a, 'b, M, F> {
+    looking: &'a Looking<'b>,
+    awake: Awake<'a, M>,
+    tell: &'a F,
+}
+
+impl<M, F: Fn(&SurfaceContacts, u32, &Faced, &mut M)> pulp::WithSimd for Face<'_, '_, M, F> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        self.looking.face(self.awake, self.tell);
+    }
+}
+
 impl Looking<'_> {
     /// Finds what some points face.
+    #[inline(always)] // with the instructions of whoever asks
     fn face<M>(&self, of: Awake<'_, M>, tell: &impl Fn(&SurfaceContacts, u32, &Faced, &mut M)) {
         let Awake { places, first, shortlists, wake, kept, mut made } = of;
         let Looking { contacts, now, .. } = *self;
@@ -125,10 +155,11 @@ impl Looking<'_> {
             let body = |triangle: u32| surface.triangles.bodies[triangle as usize] as usize;
             let reach = |triangle: u32| reaches[body(triangle)];
             let edge = |triangle: u32| meetings[body(triangle)].as_ref().map_or(contacts.edge, |meeting| meeting.edge);
-            let at_a_glance = (self.nearer, reach, edge);
-            let seen = (&mut faced, &mut own);
-            if !surface.triangles.faced_at_a_glance((now, point, short), at_a_glance, seen) {
-                let (triangles, distances) = (surface.lists.triangles(place), surface.lists.distances(place));
+            let at_a_glance = (self.nearer, (reach, self.stays.reach), edge);
+            let seen = (self.lately, &mut faced, &mut own);
+            let triangles = surface.lists.triangles(place);
+            if !surface.triangles.faced_at_a_glance((now, point, (short, triangles)), at_a_glance, seen) {
+                let distances = surface.lists.distances(place);
                 let listed = Listed { triangles, distances, nearer: self.nearer, farthest: self.farthest };
                 let moved = surface.neighbourhoods.stays(place) + self.stays.moved;
                 let (stays, kept) = (Stays { moved, ..self.stays }, (&mut faced, &mut *kept));

@@ -88,13 +88,33 @@ impl Gathered {
         let of_steps = steps.chunks_mut(NODES_A_TASK).zip(earlier.chunks_mut(NODES_A_TASK));
         let tasks = near.chunks(NODES_A_TASK).zip(of_steps.zip(responses.chunks_mut(NODES_A_TASK)));
         cpu.for_each(tasks, |(nodes, ((steps, earlier), responses))| {
-            for (((node, step), before), response) in nodes.iter().zip(steps).zip(earlier).zip(responses) {
-                let (body, row) = surface.nodes[*node as usize];
-                let of_node = bodies[body as usize].foresee(row as usize, coefficients);
-                (*step, *before) = (of_node.step.extend(0.0), of_node.before.extend(0.0));
-                *response = (of_node.free / of_node.to_force).extend(0.0);
-            }
+            cpu.dispatch(Foresee { surface, coefficients, bodies, nodes, steps, earlier, responses });
         });
+    }
+}
+
+/// The task of foreseeing where some nodes would go.
+struct Foresee<'a, 'b, T> {
+    surface: &'a Surface,
+    coefficients: &'a IntegrationCoefficients<f64>,
+    bodies: &'a [BodySlices<'b, T>],
+    nodes: &'a [u32],
+    steps: &'a mut [DVec4],
+    earlier: &'a mut [DVec4],
+    responses: &'a mut [DVec4],
+}
+
+impl<T: Scalar> pulp::WithSimd for Foresee<'_, '_, T> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self { surface, coefficients, bodies, nodes, steps, earlier, responses } = self;
+        for (((node, step), before), response) in nodes.iter().zip(steps).zip(earlier).zip(responses) {
+            let (body, row) = surface.nodes[*node as usize];
+            let of_node = bodies[body as usize].foresee(row as usize, coefficients);
+            (*step, *before) = (of_node.step.extend(0.0), of_node.before.extend(0.0));
+            *response = (of_node.free / of_node.to_force).extend(0.0);
+        }
     }
 }
 
@@ -116,7 +136,7 @@ struct Nodes<'a> {
 
 impl Nodes<'_> {
     /// Nodes with weights against others.
-    #[inline]
+    #[inline(always)] // with the instructions of whoever asks
     fn between(&self, [of_point, of_face]: [(&[u32], &[f64]); 2]) -> Parts {
         let mut parts = Parts::default();
         for (&node, &weight) in of_point.0.iter().zip(of_point.1) {
@@ -129,7 +149,7 @@ impl Nodes<'_> {
     }
 
     /// Those of a point against what it faces.
-    #[inline]
+    #[inline(always)] // likewise
     fn parts(&self, surface: &Surface, point: &Point, facing: &Facing) -> Parts {
         let (corners, weights) = surface.corners_of(point, facing);
         self.between([point.slices(), (&corners[..], &weights[..])])
@@ -138,7 +158,7 @@ impl Nodes<'_> {
     /// Adds a contact of nodes with weights, along a normal with a gap (m) and with friction and slip, if it ends
     /// nearer than `within` (m): as far outside (m) as that; with a spring, which asks for nothing else, as far as it
     /// is.
-    #[inline]
+    #[inline(always)] // likewise
     fn add(
         &self,
         batch: &mut Vec<Contact>,
@@ -233,6 +253,7 @@ pub(super) fn gather<T: Scalar>(
 
 impl Nodes<'_> {
     /// The contacts of a point, with what is kept of it, and with its nodes against those of its first face.
+    #[inline(always)] // likewise
     fn meet<T: Scalar>(
         &self,
         contacts: &SurfaceContacts,

@@ -35,6 +35,9 @@ pub(super) struct Motion {
     pub lists: Mark,
     /// Since shortlists were begun.
     pub shortlists: Mark,
+    /// How far two nodes have gone against each other at most, step by step since some time (m); infinite where
+    /// displacements are not what steps make of them.
+    pub gone: f64,
     /// How far the fastest node went in the last step, at most (m).
     pub largest: f64,
     /// Steps since it was looked where nodes are, and what rounding may have added to each (m).
@@ -107,6 +110,7 @@ impl Motion {
         let apart = steps.apart() + self.rounding;
         self.lists.moved += apart;
         self.shortlists.moved += apart;
+        self.gone = if as_stepped { self.gone + apart } else { f64::INFINITY };
         if !as_stepped || self.added_up >= STEPS_ADDED_UP {
             self.look(moving, cpu);
         }

@@ -6,7 +6,7 @@ use super::{Meeting, MeetingColumns, MeetingColumnsReadOnlyItem, Surface, Surfac
 use super::{crossings, faced, slices_of};
 use crate::backend::cpu::Cpu;
 use crate::components::Clock;
-use crate::contact::{Finder, Lists, Point, Shortlist};
+use crate::contact::{Finder, Lists, Point, Shortlist, Surfaces};
 use crate::error::Error;
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
@@ -63,7 +63,7 @@ impl SurfaceContacts {
     }
 
     /// How far nodes may move before shortlists are begun anew (m).
-    fn may_move(&self) -> f64 {
+    pub(super) fn may_move(&self) -> f64 {
         (STEPS_OF_SHORTLISTS * self.surface.motion.largest).clamp(STAYS[0] * self.edge, STAYS[1] * self.edge)
     }
 }
@@ -139,6 +139,7 @@ fn follow<T: Scalar>(
 }
 
 /// Where a node is (m, from the reference).
+#[inline(always)] // with the instructions of whoever asks
 fn place<T: Scalar>(contacts: &SurfaceContacts, bodies: &[BodySlices<'_, T>], node: usize) -> DVec3 {
     let (body, row) = contacts.surface.nodes[node];
     let (of_body, row) = (&bodies[body as usize], row as usize);
@@ -213,16 +214,55 @@ pub(super) fn renew_shortlists<T: Scalar>(contacts: &mut SurfaceContacts, bodies
 /// Sees where the nodes are that are near something.
 pub(super) fn update_places<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], cpu: &Cpu) {
     let mut places = std::mem::take(&mut contacts.surface.places);
-    cpu.for_each(tasks(&contacts.surface.near.nodes, &mut places), |(nodes, first, places)| {
-        nodes.iter().for_each(|&node| places[node as usize - first] = place(contacts, bodies, node as usize));
+    let of = &*contacts;
+    cpu.for_each(tasks(&of.surface.near.nodes, &mut places), |(nodes, first, places)| {
+        cpu.dispatch(Places { contacts: of, bodies, nodes, first, places });
     });
     contacts.surface.places = places;
+}
+
+/// The task of seeing where nodes with these numbers are.
+struct Places<'a, 'b, T> {
+    contacts: &'a SurfaceContacts,
+    bodies: &'a [BodySlices<'b, T>],
+    nodes: &'a [u32],
+    /// The number of the first place.
+    first: usize,
+    places: &'a mut [DVec3],
+}
+
+impl<T: Scalar> pulp::WithSimd for Places<'_, '_, T> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self { contacts, bodies, nodes, first, places } = self;
+        nodes.iter().for_each(|&node| places[node as usize - first] = place(contacts, bodies, node as usize));
+    }
 }
 
 /// Sees which way the triangles look that are near something.
 pub(super) fn update_normals(surface: &mut Surface, cpu: &Cpu) {
     let Surface { near, triangles, places, normals, .. } = surface;
     cpu.for_each(tasks(&near.triangles, normals), |(numbers, first, normals)| {
-        numbers.iter().for_each(|&number| normals[number as usize - first] = triangles.normal(places, number));
+        cpu.dispatch(Normals { triangles, places, numbers, first, normals });
     });
+}
+
+/// The task of finding the normals of triangles with these numbers.
+struct Normals<'a> {
+    triangles: &'a Surfaces,
+    places: &'a [DVec3],
+    numbers: &'a [u32],
+    /// The number of the first normal.
+    first: usize,
+    normals: &'a mut [DVec3],
+}
+
+impl pulp::WithSimd for Normals<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self { triangles, places, numbers, first, normals } = self;
+        numbers.iter().for_each(|&number| normals[number as usize - first] = triangles.normal(places, number));
+    }
 }

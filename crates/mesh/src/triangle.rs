@@ -63,14 +63,19 @@ impl OnTriangle {
     /// of length e, P, changes by s = m/e at most, the sine of the angle that the side turns by, and so o · P w by
     /// m (|P o| + |P w| + s (|o| + |w|) + m) + s |o| |w|.
     pub fn keeps_part(&self, y: DVec3, corners: [DVec3; 3], moved: f64) -> bool {
-        if self.part == 0 {
+        Self::stays_nearest(y, corners, self.part, moved)
+    }
+
+    /// The same of a part that the nearest place is on.
+    pub fn stays_nearest(y: DVec3, corners: [DVec3; 3], part: usize, moved: f64) -> bool {
+        if part == 0 {
             return false;
         }
-        let [a, b, c] = [2, 0, 1].map(|next| corners[(self.part + next) % 3]);
+        let [a, b, c] = [2, 0, 1].map(|next| corners[(part + next) % 3]);
         let (along, inwards, off) = (b - a, c - a, y - a);
         let [e, w, o] = [along, inwards, off].map(|vector| vector.length());
         let (ahead, in_it) = (along.dot(off), inwards.dot(off));
-        if self.part > 3 {
+        if part > 3 {
             return ahead < -moved * (e + o + moved) && in_it < -moved * (w + o + moved);
         }
         let turned = moved / e;

@@ -16,9 +16,9 @@ pub(in crate::contact) fn by_shortlist(
     surfaces.faced((now, point), listed, (reach, |_| 1.0), (&mut same, Stays::default()), kept);
     // with normals that are known, and with those that are asked for
     let mut is_all = [now.normals, &[][..]].into_iter().map(|normals| {
-        let of = (Placed { normals, ..now }, point, short);
-        let seen = (&mut seen, &mut Own::default());
-        surfaces.faced_at_a_glance(of, (listed.nearer, reach, |_| 1.0), seen)
+        let of = (Placed { normals, ..now }, point, (&mut short.clone(), listed.triangles));
+        let seen = (Lately { gone: f64::INFINITY, farther: 0.0 }, &mut seen, &mut Own::default());
+        surfaces.faced_at_a_glance(of, (listed.nearer, (reach, 0.0), |_| 1.0), seen)
     });
     let is_all = is_all.all(|is_all| is_all);
     assert!(!is_all || seen == chosen, "{seen:?}, {chosen:?}");
@@ -156,8 +156,9 @@ fn beside_rims_and_at_rims_a_glance_tells() {
     let owners = [[0; 12], [1; 12]].concat();
     let surfaces = Surfaces::new(16, triangles, owners, vec![0.5; 24]);
     let listed: Vec<u32> = (0..12).collect();
-    // how many are not seen at a glance, and how many are
+    // how many are not seen at a glance, and how many are; and of how many one triangle alone is looked at
     let [mut beyond, mut before] = [[0; 2]; 2];
+    let mut alone = 0;
     for _ in 0..200 {
         let mut within = |size: f64| size * (random.f64() - 0.5);
         let turned = glam::DQuat::from_euler(glam::EulerRot::XYZ, within(0.02), within(0.02), within(1.5));
@@ -181,9 +182,30 @@ fn beside_rims_and_at_rims_a_glance_tells() {
             let is_beyond = place.min(DVec3::ONE - place).truncate().min_element() < 0.0;
             let counted = if is_beyond { &mut beyond } else { &mut before };
             counted[usize::from(at_a_glance)] += 1;
+            // nodes move by less than the shortlist allows for: what one triangle alone tells is what all tell
+            let (all, mut seen) = (short.triangles().map_or(0, <[u32]>::len), Faced::NOTHING);
+            let mut glance = |short: &mut Shortlist, places: &[DVec3], gone: f64| {
+                let of = (Placed { places, normals: &[] }, &point, (short, listed.triangles));
+                let seen = (Lately { gone, farther: stays.moved }, &mut seen, &mut Own::default());
+                surfaces.faced_at_a_glance(of, (0.0, (|_| 0.05, stays.reach), |_| 1.0), seen)
+            };
+            glance(&mut short, &places, 0.0);
+            let gone = Lately { gone: 0.99 * stays.moved, farther: 0.0 };
+            let is_alone = all > 1 && short.triangles_now(gone).is_some_and(|(now, _)| now.len() == 1);
+            let half = 0.5 * 0.99 * stays.moved / 3.0_f64.sqrt();
+            let moved: Vec<DVec3> =
+                places.iter().map(|at| at + half * DVec3::new(within(2.0), within(2.0), within(2.0))).collect();
+            if is_alone && glance(&mut short, &moved, gone.gone) {
+                let (mut anew, mut of_all) = (Shortlist::UNKNOWN, Faced::NOTHING);
+                let (now, kept) = (Placed { places: &moved, normals: &[] }, (&mut of_all, &mut Kept::default()));
+                surfaces.faced((now, &point), listed, (|_| 0.05, |_| 1.0), (&mut anew, stays), kept);
+                assert_eq!((seen.first, seen.second), (of_all.first, of_all.second));
+                alone += 1;
+            }
         }
     }
     assert!(beyond[1] > 100 && beyond[0] < beyond[1] / 4, "{beyond:?}");
     // those within are inside several triangles at once, as far as an inside goes
     assert!(before[1] > 80, "{before:?}");
+    assert!(alone > 50, "{alone}");
 }

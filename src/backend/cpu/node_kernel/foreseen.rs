@@ -19,6 +19,7 @@ pub struct Foreseen {
 impl IntegrationCoefficients<f64> {
     /// Where a node would go with a mass (kg), a damping coefficient (kg/s), constrained axes (bits), the last step (m)
     /// and a force (N); inactive nodes, without mass, stay where they are.
+    #[inline(always)] // with the instructions of whoever asks
     pub fn foresee(&self, mass: f64, damping: f64, axes: u32, before: DVec3, force: DVec3) -> Foreseen {
         if mass <= 0.0 {
             return Foreseen { before: DVec3::ZERO, step: DVec3::ZERO, free: DVec3::ZERO, to_force: f64::INFINITY };
