@@ -11,7 +11,8 @@ use glam::DVec3;
 pub struct ContactReading {
     /// The force on it (N); what it does to itself is 0 in sum.
     pub force: DVec3,
-    /// How many of its points touch faces: of its nodes, and where `points: Faces` looks at them of points of its faces.
+    /// How many of its points touch faces: of its nodes, and where `points: Faces` looks at them of points of its
+    /// faces.
     pub points: usize,
     /// How deep the deepest of these is inside (m); 0 where none is.
     pub penetration: f64,

@@ -47,8 +47,8 @@ pub struct GuardSettings {
     pub springs: bool,
     /// Whether steps are implicit: limits of energy are ten times those that the scene has.
     pub implicit: bool,
-    /// Whether these are solved, and not as far as one iteration or a budget leads: energy that their formula makes ends
-    /// the run then.
+    /// Whether these are solved, and not as far as one iteration or a budget leads: energy that their formula makes
+    /// ends the run then.
     pub solved: bool,
 }
 
