@@ -17,9 +17,12 @@ const SLIDES: f32 = 2.0;
 const TURNS: u32 = 12u;
 const SETTLED: f32 = 1e-7; // changes of a turn, in edges, that are none
 const STILL: f32 = 1e-6; // what is still slips by no more in a step, in edges
+const SMOOTH: f32 = 0.9; // see systems/tool_contact/direction.rs
 
 struct Touch {
+    start: vec3<f32>, // outward normals where the node begins and where it ends
     normal: vec3<f32>,
+    direction: vec3<f32>, // along which it is pushed; friction is across
     gap: f32, // how far from where it may be it ends (m)
     target_gap: f32, // where it may be: the distance from the surface (m)
     outwards: vec3<f32>, // what the tool adds (m)
@@ -71,6 +74,11 @@ fn surface_of(tool: u32, touch: ptr<function, Touch>, at: vec3<f32>) -> vec4<f32
     return distance_to(tools[tool], at);
 }
 
+// A direction of the tool's frame in the scene's.
+fn turned(pose: array<vec4<f32>, 3>, normal: vec3<f32>) -> vec3<f32> {
+    return vec3<f32>(dot(pose[0].xyz, normal), dot(pose[1].xyz, normal), dot(pose[2].xyz, normal));
+}
+
 fn predict(
     tool: u32,
     rest: vec3<f32>,
@@ -90,33 +98,40 @@ fn predict(
         first_touch(tool, into_frame(earlier, rest, moved), of_tool, &touch);
     }
     let surface = surface_of(tool, &touch, of_tool);
-    var allowed = 0.0;
-    if surface.w < 0.0 {
-        var out = limits.settling * step.time_step;
-        if limits.counts_work == 0u {
-            out = 0.1 * limits.edge;
-        }
-        allowed = min(distance_to(tools[tool], into_frame(earlier, rest, moved)).w + out, 0.0);
-    }
     let at_tool = vec4<f32>(of_tool, 1.0);
-    touch.normal = vec3<f32>(dot(pose[0].xyz, surface.xyz), dot(pose[1].xyz, surface.xyz), dot(pose[2].xyz, surface.xyz));
-    touch.gap = surface.w - allowed;
-    touch.target_gap = allowed;
+    touch.normal = turned(pose, surface.xyz);
+    touch.start = touch.normal;
+    touch.direction = touch.normal;
+    touch.gap = surface.w;
+    touch.target_gap = 0.0;
     touch.outwards = vec3<f32>(0.0);
     touch.tool_step = vec3<f32>(dot(change[0], at_tool), dot(change[1], at_tool), dot(change[2], at_tool));
     touch.tangential = vec3<f32>(0.0);
     touch.push = 0.0;
     touch.slides = true;
     touch.touches = surface.w <= limits.edge;
-    if touch.touches && tools[tool].share > 0.0 {
+    if touch.touches {
         let here = into_frame(earlier, rest, moved);
         let now = distance_to(tools[tool], here);
-        let at_here = vec4<f32>(here, 1.0);
-        touch.normal = vec3<f32>(dot(earlier[0].xyz, now.xyz), dot(earlier[1].xyz, now.xyz), dot(earlier[2].xyz, now.xyz));
-        touch.tool_step = vec3<f32>(dot(change[0], at_here), dot(change[1], at_here), dot(change[2], at_here));
-        touch.gap = step.work_factor * spring_gap(
-            tools[tool].share, tools[tool].damping, now.w, dot(touch.normal, before - touch.tool_step));
-        touch.touches = touch.gap < 0.0;
+        if !touch.swept {
+            touch.start = turned(earlier, now.xyz);
+        }
+        if surface.w < 0.0 {
+            var out = limits.settling * step.time_step;
+            if limits.counts_work == 0u {
+                out = 0.1 * limits.edge;
+            }
+            touch.target_gap = min(now.w + out, 0.0);
+            touch.gap = surface.w - touch.target_gap;
+        }
+        if tools[tool].share > 0.0 {
+            let at_here = vec4<f32>(here, 1.0);
+            touch.normal = touch.start;
+            touch.tool_step = vec3<f32>(dot(change[0], at_here), dot(change[1], at_here), dot(change[2], at_here));
+            touch.gap = step.work_factor * spring_gap(
+                tools[tool].share, tools[tool].damping, now.w, dot(touch.normal, before - touch.tool_step));
+            touch.touches = touch.gap < 0.0;
+        }
     }
     // what was not at the tool and does not slip along it is held as what stuck is
     let still = length(along_surface(before - touch.tool_step, touch.normal)) <= STILL * limits.edge;
@@ -133,7 +148,7 @@ fn evaluate_again(tool: u32, rest: vec3<f32>, moved: vec3<f32>, before: Touch) -
     let of_tool = into_frame(pose, rest, moved);
     let surface = surface_of(tool, &touch, of_tool);
     let at_tool = vec4<f32>(of_tool, 1.0);
-    touch.normal = vec3<f32>(dot(pose[0].xyz, surface.xyz), dot(pose[1].xyz, surface.xyz), dot(pose[2].xyz, surface.xyz));
+    touch.normal = turned(pose, surface.xyz);
     touch.gap = surface.w - touch.target_gap;
     touch.tool_step = vec3<f32>(
         dot(step.signals[at + 3u], at_tool), dot(step.signals[at + 4u], at_tool), dot(step.signals[at + 5u], at_tool));
@@ -186,19 +201,24 @@ fn tool_contact(i: u32, node: u32) {
             if turn > 0u && !waits {
                 found[tool] = evaluate_again(tool, rest, moved + predicted + sum, found[tool]);
             }
-            let normal = found[tool].normal;
-            let along = dot(normal, free * normal);
+            let end = found[tool].normal;
+            let at_end = dot(end, free * end);
+            let at_start = dot(end, free * found[tool].start);
+            let is_smooth = at_start >= SMOOTH * at_end && SMOOTH * at_start <= at_end;
+            let along = select(at_end, at_start, is_smooth);
+            let way = select(end, found[tool].start, is_smooth);
+            found[tool].direction = way;
             if along > 1e-9 && !waits {
                 let push = max(found[tool].push - found[tool].gap / along, 0.0);
-                let outwards = normal * (push - found[tool].push);
+                let outwards = way * (push - found[tool].push);
                 sum += free * outwards;
                 found[tool].outwards += outwards;
                 most = max(most, abs(push - found[tool].push));
                 found[tool].push = push;
             }
             if found[tool].friction > 0.0 {
-                let slip = along_surface(predicted + sum - found[tool].tool_step, normal);
-                let wanted = along_surface(found[tool].tangential, normal) - slip;
+                let slip = along_surface(predicted + sum - found[tool].tool_step, way);
+                let wanted = along_surface(found[tool].tangential, way) - slip;
                 let bound = found[tool].friction * found[tool].push;
                 let size = length(wanted);
                 found[tool].slides = size > bound;
@@ -237,7 +257,7 @@ fn tool_contact(i: u32, node: u32) {
         if limits.counts_work != 0u {
             let work = step.work_factor * dot(force, found[tool].tool_step);
             let on_node = step.work_factor * dot(force, 0.5 * (of_node.before + d));
-            tool_touch[at_tool + 4u] += length(along_surface(d - found[tool].tool_step, found[tool].normal));
+            tool_touch[at_tool + 4u] += length(along_surface(d - found[tool].tool_step, found[tool].direction));
             tool_touch[at_tool + 5u] += work;
             tool_touch[at_tool + 6u] += work - on_node;
         }

@@ -1,6 +1,7 @@
 //! `tool_contact`: rigid tools keep nodes outside. `shaders/tool_contact.wgsl` is its twin.
 
 mod device;
+pub(super) mod direction;
 mod in_step;
 mod row;
 mod solved;
@@ -15,6 +16,7 @@ use super::system::{Phase, System};
 use crate::backend::cpu::{Cpu, Foreseen, NodeColumns};
 use crate::components::*;
 use crate::math::{Extremes, See, SimdScalar};
+use direction::direction;
 use glam::DVec3;
 pub use in_step::ContactStep;
 use in_step::ToolInStep;
@@ -27,7 +29,9 @@ use std::ops::Range;
 /// find it, and where it would end inside a tool, the force is found that makes it end on the surface. That force is a
 /// load like others, so that `integrate`, the balance of energy and the residual of a static analysis need not know of
 /// tools. A node and a rigid tool are one equation: it is solved exactly, for any mass and step, and leaves the stable
-/// step as it is. The touching node stops: what it loses is an impact's plastic part, half a layer's kinetic energy.
+/// step as it is. It goes along the normal where the node is before the step and the force acts, so that it does no
+/// work on what slides along a curved surface. The touching node stops: what it loses is an impact's plastic part, half
+/// a layer's kinetic energy.
 ///
 /// Friction holds the node at the tool's surface with at most μ times this step's normal force; who does not slide
 /// moves with the tool exactly. Nodes between several tools take turns, until their forces fit.
@@ -59,9 +63,12 @@ const TURNS: usize = 12;
 #[derive(Clone, Copy, Default)]
 struct Touch {
     tool: usize,
-    /// Outward normal where the node ends, and how far from where it may be it ends there (m).
+    /// Outward normals where the node begins and where it ends, and how far from where it may be it ends there (m).
+    start: DVec3,
     normal: DVec3,
     gap: f64,
+    /// Along which it is pushed; friction is across.
+    direction: DVec3,
     /// Where it may be: the distance from the surface (m), 0 but for nodes that are inside already.
     target: f64,
     /// How far the tool goes there (m).
@@ -215,7 +222,7 @@ impl ToolContacts {
             sum += force;
             let numbers = self.numbers_a_tool();
             let of_tool = &mut values[numbers * touch.tool..numbers * (touch.tool + 1)];
-            let slip = along_surface(d - touch.tool_step, touch.normal).length();
+            let slip = along_surface(d - touch.tool_step, touch.direction).length();
             for i in 0..3 {
                 of_tool[i] = T::from_f64(force[i]);
             }
@@ -257,28 +264,29 @@ impl ToolContacts {
         if distance > self.edge {
             return None;
         }
+        let (now, start) = contact.geometry.distance(here);
+        let start = earlier.rotation * start;
         let friction = |normal: DVec3, tool_step: DVec3| {
             let still = || along_surface(before - tool_step, normal).length() <= STILL * self.edge;
             let is_held = stuck || !slid && contact.friction[0] != contact.friction[1] && still();
             contact.friction[usize::from(!is_held)]
         };
         if let Some(spring) = contact.spring {
-            let (distance, normal) = contact.geometry.distance(here);
-            let (normal, tool_step) = (earlier.rotation * normal, change.place(here));
-            let gap = step.coefficients.work_factor * spring.gap(distance, normal.dot(before - tool_step));
-            let friction = friction(normal, tool_step);
-            let still = Touch { tool, normal, gap, target: 0.0, tool_step, friction, ..Touch::default() };
+            let tool_step = change.place(here);
+            let gap = step.coefficients.work_factor * spring.gap(now, start.dot(before - tool_step));
+            let friction = friction(start, tool_step);
+            let still = Touch { tool, start, normal: start, gap, tool_step, friction, ..Touch::default() };
             return (gap < 0.0).then_some(Touch { slides: true, springs: true, ..still });
         }
         let mut target = 0.0;
         if distance < 0.0 {
             // who is inside already comes out by and by
-            let now = contact.geometry.distance(here).0;
             target = (now + step.out).min(0.0);
         }
         let (normal, tool_step) = (pose.rotation * normal, change.place(of_tool));
         Some(Touch {
             tool,
+            start: if plane.is_some() { normal } else { start },
             normal,
             gap: distance - target,
             target,
@@ -316,19 +324,20 @@ impl ToolContacts {
                     touch.gap = distance - touch.target;
                     touch.tool_step = tool.change.place(of_tool);
                 }
-                let along = touch.normal.dot(free * touch.normal);
+                let (way, along) = direction([touch.start, touch.normal], |push| free * push);
+                touch.direction = way;
                 // held along the normal: nobody can push it there
                 if along > 1e-9 && !(turn > 0 && touch.springs) {
                     let push = (touch.push - touch.gap / along).max(0.0);
-                    let outwards = touch.normal * (push - touch.push);
+                    let outwards = way * (push - touch.push);
                     sum += free * outwards;
                     touch.outwards += outwards;
                     most = most.max((push - touch.push).abs());
                     touch.push = push;
                 }
                 if touch.friction > 0.0 {
-                    let slip = along_surface(predicted + sum - touch.tool_step, touch.normal);
-                    let wanted = along_surface(touch.tangential, touch.normal) - slip;
+                    let slip = along_surface(predicted + sum - touch.tool_step, way);
+                    let wanted = along_surface(touch.tangential, way) - slip;
                     let bound = touch.friction * touch.push;
                     let size = wanted.length();
                     touch.slides = size > bound;

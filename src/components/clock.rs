@@ -98,6 +98,11 @@ impl Clock {
         if self.step > 0 && self.relaxation.is_none() && !self.velocities_at_ends { 0.5 } else { 0.0 }
     }
 
+    /// Δt of the last step (s).
+    pub(crate) fn last_step(&self) -> f64 {
+        if self.step == self.since.0 { self.before } else { self.time_step }
+    }
+
     /// Takes steps of another length from now on (s).
     #[doc(hidden)]
     pub fn change_step(&mut self, time_step: f64) {

@@ -63,8 +63,9 @@ pub struct FreeReading {
     pub damping_loss: f64,
 }
 
-/// What a tool feels. Forces are those of the step that led here; their arms are those of its end, where contact and
-/// grasps have put nodes on the tool.
+/// What a tool feels. Forces are those of the step that led here. Arms of contact are those of its beginning, when its
+/// forces acted, and of implicit steps and at rest those of its end; arms of grasps are those of its end, where nodes
+/// are put on the tool.
 ///
 /// # Errors
 /// What the GPU says.
@@ -84,17 +85,18 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
     }
     let clock = *world.resource::<Clock>();
     let now = poses_now(world);
+    let (back, acted) = when_forces_acted(world);
     let counted = clock.relaxation.is_none().then_some(0.0);
     let mut reading = ToolReading { work: counted, loss: counted, ..ToolReading::default() };
     let of_tool =
         slot_of(world, tool).and_then(|(slot, reference)| Some((now.iter().find(|of| of.0 == slot)?, reference)));
     reading.place = of_tool.map_or(DVec3::ZERO, |((_, pose), reference)| pose.at + reference);
-    let mut bodies = world.query::<(&ToolContacts, &ToolTouch, &Mass, &RestPosition, &Displacement)>();
-    for (contacts, touch, mass, rest, u) in bodies.iter(world) {
+    type Bodies<'a> = ((&'a ToolContacts, &'a ToolTouch), &'a Mass, Places<'a>);
+    let mut bodies = world.query::<Bodies<'_>>();
+    for ((contacts, touch), mass, (rest, u, step)) in bodies.iter(world) {
         for (number, contact) in contacts.tools.iter().enumerate().filter(|(_, contact)| contact.tool == tool) {
-            let Some(pose) = now.iter().find(|(slot, _)| *slot == contact.signal).map(|(_, pose)| *pose) else {
-                continue;
-            };
+            let [pose, earlier] = [&now, &acted].map(|poses| pose_in(poses, contact.signal));
+            let (Some(pose), Some(earlier)) = (pose, earlier) else { continue };
             let ball = contact.geometry.bounding_sphere().map(|(center, radius)| (pose.place(center), radius));
             for (place, (&row, &mask)) in contacts.rows.iter().zip(&contacts.masks).enumerate() {
                 if mask >> number & 1 == 0 {
@@ -118,7 +120,7 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
                     let force = -DVec3::new(number(0), number(1), number(2));
                     reading.nodes += 1;
                     reading.force += force;
-                    reading.torque += (end - pose.at).cross(force);
+                    reading.torque += (end - back * step.vector(row) - earlier.at).cross(force);
                 }
             }
         }
@@ -216,7 +218,7 @@ fn suction_at(world: &World, suction: &Suction, body: Entity, about: DVec3) -> O
 pub struct Felt {
     /// The mean of the force on it (N); of what it sucks that of the last step.
     pub force: DVec3,
-    /// The moment of this force about its origin, where nodes and tool are at the end (N m).
+    /// The moment of this force about its origin (N m), with arms as [`read_tool`] takes them, of the last step.
     pub torque: DVec3,
     /// Whether it touched, held or sucked anything.
     pub in_contact: bool,
@@ -231,22 +233,41 @@ pub(super) fn poses_now(world: &World) -> Vec<(usize, Pose)> {
     }
 }
 
+/// Where a node is at rest, and goes.
+type Places<'a> = (&'a RestPosition, &'a Displacement, &'a DisplacementIncrement);
+
+/// When the forces of contact in the last step acted: how many of a node's last increments lead back there, and where
+/// guided tools were. In explicit steps that is the beginning of the step, else its end.
+fn when_forces_acted(world: &World) -> (f64, Vec<(usize, Pose)>) {
+    let clock = world.resource::<Clock>();
+    if clock.back_to_middle() == 0.0 {
+        return (0.0, poses_now(world));
+    }
+    // where Δt has changed since, increments are those of the new one
+    let ago = clock.last_step();
+    (ago / clock.time_step, world.resource::<Signals>().poses_at(clock.time() - ago))
+}
+
+fn pose_in(poses: &[(usize, Pose)], slot: usize) -> Option<Pose> {
+    poses.iter().find(|(of, _)| *of == slot).map(|(_, pose)| *pose)
+}
+
 /// What the tools of hands felt in so many steps; another batch begins for each tool that is asked for. Of what they
 /// suck that is the last step alone, whose faces and pressures are still there.
 ///
 /// # Errors
 /// What the GPU says.
 pub fn feel(world: &mut World, tool: &str, steps: u64) -> Result<Felt, Error> {
-    bring_to_host(world, |_, name| [ToolTouch::NAME, ToolHold::NAME, Displacement::NAME].contains(&name))?;
+    let wanted = [ToolTouch::NAME, ToolHold::NAME, Displacement::NAME, DisplacementIncrement::NAME];
+    bring_to_host(world, |_, name| wanted.contains(&name))?;
     let now = world.resource::<Signals>().poses_at(world.resource::<Clock>().time());
+    let (back, acted) = when_forces_acted(world);
     let mut felt = Felt::default();
-    let mut bodies = world.query::<(&ToolContacts, &mut ToolTouch, &RestPosition, &Displacement)>();
-    for (contacts, mut touch, rest, u) in bodies.iter_mut(world).filter(|(contacts, ..)| contacts.felt) {
+    let mut bodies = world.query::<(&ToolContacts, &mut ToolTouch, Places<'_>)>();
+    for (contacts, mut touch, (rest, u, step)) in bodies.iter_mut(world).filter(|(contacts, ..)| contacts.felt) {
         let numbers = contacts.numbers_a_tool();
         for (bit, contact) in contacts.tools.iter().enumerate().filter(|(_, contact)| contact.tool == tool) {
-            let Some(at) = now.iter().find(|(slot, _)| *slot == contact.signal).map(|(_, pose)| pose.at) else {
-                continue;
-            };
+            let Some(earlier) = pose_in(&acted, contact.signal) else { continue };
             for (place, &row) in contacts.rows.iter().enumerate() {
                 let first = numbers * (contacts.tools.len() * place + bit) + TOUCH_NUMBERS;
                 let force = -DVec3::from_array([0, 1, 2].map(|i| touch.get(first + i))) / steps as f64;
@@ -254,9 +275,10 @@ pub fn feel(world: &mut World, tool: &str, steps: u64) -> Result<Felt, Error> {
                     continue;
                 }
                 (0..FELT_NUMBERS).for_each(|i| touch.set(first + i, 0.0));
-                let end = rest.0[row as usize] - contacts.reference + u.vector(row as usize);
+                let row = row as usize;
+                let place = rest.0[row] - contacts.reference + u.vector(row) - back * step.vector(row);
                 felt.force += force;
-                felt.torque += (end - at).cross(force);
+                felt.torque += (place - earlier.at).cross(force);
                 felt.in_contact = true;
             }
         }
@@ -269,7 +291,7 @@ pub fn feel(world: &mut World, tool: &str, steps: u64) -> Result<Felt, Error> {
     if !suctions.iter(world).any(|(suction, _)| suction.tool == tool) {
         return Ok(felt);
     }
-    let wanted = [DisplacementIncrement::NAME, SuctionMarks::NAME, SuctionPressure::NAME];
+    let wanted = [SuctionMarks::NAME, SuctionPressure::NAME];
     bring_to_host(world, |_, name| wanted.contains(&name))?;
     for (suction, body) in suctions.iter(world).filter(|(suction, _)| suction.tool == tool) {
         let Some(at) = now.iter().find(|(slot, _)| *slot == suction.pose).map(|(_, pose)| pose.at) else { continue };

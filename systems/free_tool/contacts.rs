@@ -4,6 +4,7 @@ use super::{Repeat, Response, ToolStep};
 use crate::backend::cpu::Foreseen;
 use crate::components::{FreeTool, FreeTouch, Pose};
 use crate::systems::tool_contact::STILL;
+use crate::systems::tool_contact::direction::direction;
 use crate::systems::tool_contact::sweep::{self, Plane, first_touch};
 use glam::{DMat3, DVec3};
 
@@ -55,6 +56,8 @@ struct Contact {
     /// ends.
     here: DVec3,
     plane: Option<Plane>,
+    /// The outward normal where it is (along the scene's axes).
+    start: DVec3,
     /// Where it may be: the distance from the surface (m), 0 but for nodes that are inside already.
     target: f64,
     outwards: DVec3,
@@ -104,7 +107,7 @@ pub(super) fn solve(step: &ToolStep<'_>, near: Vec<Near>) -> Solved {
         let pose = tool.pose(&motion.after(dt, inertia));
         let change = pose.less(&begin);
         if sweep == 0 {
-            contacts.retain_mut(|contact| contact.begins(tool, &pose));
+            contacts.retain_mut(|contact| contact.begins(tool, [&begin, &pose]));
         }
         // how the tool has gone on since this pose (m, rad)
         let (mut way, mut turn) = (DVec3::ZERO, DVec3::ZERO);
@@ -117,12 +120,14 @@ pub(super) fn solve(step: &ToolStep<'_>, near: Vec<Near>) -> Solved {
             let normal = pose.rotation * normal;
             let compliance = contact.compliance(response);
             let before = contact.force();
-            let along = normal.dot(compliance * normal);
+            // a plane has the same one all the way
+            let start = if contact.plane.is_some() { normal } else { contact.start };
+            let (out, along) = direction([start, normal], |push| compliance * push);
             let push = (contact.push - (distance - contact.target) / along).max(0.0);
-            (contact.outwards, contact.push) = (normal * push, push);
+            (contact.outwards, contact.push) = (out * push, push);
             // with what the push has just moved
             let gone = contact.step() - further - self_step(&contact.near, contact.force() - before, response);
-            contact.rub(gone - change.place(y), normal, &compliance);
+            contact.rub(gone - change.place(y), out, &compliance);
             let force = contact.force() - before;
             way -= force * (response.linear * dt);
             turn -= response.angular * arm.cross(force) * dt;
@@ -152,7 +157,17 @@ fn self_step(near: &Near, force: DVec3, response: &Response) -> DVec3 {
 impl Contact {
     fn new(near: Near, begin: &Pose) -> Self {
         let (zero, here) = (DVec3::ZERO, begin.inverse(near.place));
-        Self { near, here, plane: None, target: 0.0, outwards: zero, push: 0.0, tangential: zero, slip: 0.0 }
+        Self {
+            near,
+            here,
+            plane: None,
+            start: zero,
+            target: 0.0,
+            outwards: zero,
+            push: 0.0,
+            tangential: zero,
+            slip: 0.0,
+        }
     }
 
     /// How far its node is outside of what it must stay outside of (m) where it ends in the tool's frame, and which way
@@ -166,10 +181,11 @@ impl Contact {
 
     /// Whether it may come to touch: its node ends less than an edge from the tool. Who is inside already comes out by
     /// and by, but for whom others keep inside: a guided tool that holds it, and pushes after this one.
-    fn begins(&mut self, tool: &FreeTool, pose: &Pose) -> bool {
+    fn begins(&mut self, tool: &FreeTool, [begin, pose]: [&Pose; 2]) -> bool {
         let distance = self.surface(tool, pose.inverse(self.near.place + self.near.foreseen.step)).0;
+        let (now, start) = tool.geometry.distance(self.here);
+        self.start = begin.rotation * start;
         if distance < 0.0 {
-            let now = tool.geometry.distance(self.here).0;
             let kept = self.near.target.map_or(now, |target| now.max(target));
             self.target = (kept + self.near.out).min(0.0);
         }

@@ -101,8 +101,8 @@ fn a_ball_that_is_let_go_comes_to_rest_on_tissue_and_weighs_on_what_holds_it() {
 }
 
 /// A body that is heavier than all tissue goes on as a guided tool goes, and does to tissue what that does: its own
-/// share of each correction is 1e-9 of it. With friction on a flat one: on round ones `tool_contact` keeps what it
-/// pushed in earlier turns along the normals of these.
+/// share of each correction is 1e-9 of it. With friction on a flat one: on round ones each finds pushes and friction in
+/// turns of its own.
 #[test]
 #[ignore = "long"]
 fn a_tool_too_heavy_to_be_held_up_is_a_guided_one() {
