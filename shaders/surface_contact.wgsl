@@ -212,9 +212,34 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
     return both;
 }
 
+// How far the end of a normal as long as a thickness (m) has gone in the last step as a triangle turned (m).
+fn turned_by(thickness: f32, triangle: u32) -> vec3<f32> {
+    if thickness <= 0.0 {
+        return vec3<f32>(0.0);
+    }
+    let at = 8u * triangle;
+    let corners = corners_of(triangle, place_of(surface_faces[at]));
+    let by_a = last_step_of(surface_faces[at]);
+    let by_b = last_step_of(surface_faces[at + 1u]) - by_a;
+    let by_c = last_step_of(surface_faces[at + 2u]) - by_a;
+    // sides in the middle of the step, and how they changed in it
+    let b = corners[1] - corners[0] - 0.5 * by_b;
+    let c = corners[2] - corners[0] - 0.5 * by_c;
+    let across = cross(b, c);
+    let change = cross(by_b, c) + cross(b, by_c);
+    let size = max(length(across), 1e-37);
+    let normal = across / size;
+    return (change - normal * dot(normal, change)) * (thickness / size);
+}
+
+fn last_step_of(node: u32) -> vec3<f32> {
+    let at = NODE_NUMBERS * node + LAST;
+    return vec3<f32>(surface_nodes[at], surface_nodes[at + 1u], surface_nodes[at + 2u]);
+}
+
 // What holds a point: the static coefficient where it stuck in the last step, or touched nothing and does not slip.
-fn friction_of(meets: u32, parts: Parts, normal: vec3<f32>, state: f32) -> f32 {
-    let before = goes(parts, LAST);
+fn friction_of(meets: u32, parts: Parts, turned: vec3<f32>, normal: vec3<f32>, state: f32) -> f32 {
+    let before = goes(parts, LAST) - turned;
     let still = length(before - normal * dot(normal, before)) <= STILL * meeting_number(meets, EDGE);
     let is_held = state == STICKS || (state != SLIDES && still);
     return meeting_number(meets, select(2u, 1u, is_held));
@@ -253,8 +278,9 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
         }
         allowed = max(min(before + min(outside_by - expected, 0.0) + settling, 0.0), min(outside_by, 0.0));
         let gap = max(outside_by - allowed, -OUT * edge);
-        let friction = friction_of(meets, parts, both.first.normal, state);
-        let begun = Begun(both.first.normal, gap, outside_by, allowed, SHARES * edge, friction, slip);
+        let turned = turned_by(meeting_number(meets, 3u), both.first.triangle);
+        let friction = friction_of(meets, parts, turned, both.first.normal, state);
+        let begun = Begun(both.first.normal, gap, outside_by, allowed, SHARES * edge, friction, slip - turned);
         if meets_it(meets, parts, begun) {
             begin(2u * point, meets, parts, begun);
         }
@@ -266,8 +292,9 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
         let within = SHARES * meeting_number(meets, EDGE);
         let parts = parts_of(point, both.second, place);
         let second = gap_of(both.second, parts, place) - meeting_number(meets, 3u);
-        let friction = friction_of(meets, parts, both.second.normal, state);
-        let begun = Begun(both.second.normal, max(second, -settling), second, 0.0, within, friction, vec3<f32>(0.0));
+        let turned = turned_by(meeting_number(meets, 3u), both.second.triangle);
+        let friction = friction_of(meets, parts, turned, both.second.normal, state);
+        let begun = Begun(both.second.normal, max(second, -settling), second, 0.0, within, friction, -turned);
         if meets_it(meets, parts, begun) {
             begin(2u * point + 1u, meets, parts, begun);
         }

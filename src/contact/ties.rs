@@ -7,6 +7,8 @@ use glam::DVec3;
 pub struct Tie {
     /// Places in [`TieSet::steps`] with signed weights: positive of the point's nodes, negative of the other's.
     pub parts: Vec<(u32, f64)>,
+    /// How many of these, the first, are the point's: of the other's, too, some weights may be positive.
+    points: usize,
     /// Whether it bears anything.
     pub holds: bool,
     /// How far from where it belongs it is before the step (m).
@@ -20,9 +22,9 @@ pub struct Tie {
 }
 
 impl Tie {
-    /// Of nodes with signed weights, so far off (m).
-    pub fn new(parts: Vec<(u32, f64)>, off: DVec3) -> Self {
-        Self { parts, holds: true, off, force: DVec3::ZERO, yields: 0.0, change: DVec3::ZERO }
+    /// Of nodes with signed weights, of which the first so many are the point's, so far off (m).
+    pub fn new(parts: Vec<(u32, f64)>, points: usize, off: DVec3) -> Self {
+        Self { parts, points, holds: true, off, force: DVec3::ZERO, yields: 0.0, change: DVec3::ZERO }
     }
 
     /// The point's step against the other's (m).
@@ -92,7 +94,7 @@ impl TieSet {
     pub fn press(&mut self, masses: &[f64], per_mass: f64) {
         self.split();
         for tie in self.ties.iter_mut().filter(|tie| tie.holds) {
-            let of_point = tie.parts.iter().filter(|(_, weight)| *weight > 0.0);
+            let of_point = tie.parts.iter().take(tie.points);
             let mass: f64 = of_point.map(|&(node, weight)| weight * masses[node as usize]).sum();
             tie.force = tie.off * (-per_mass * mass);
         }

@@ -69,9 +69,9 @@ pub(super) struct Work {
 impl Work {
     pub fn of(glue: &Glue) -> Self {
         let nodes = nodes_of(glue);
-        let of_tie = |tie| {
+        let of_tie = |tie: &TiedPoint| {
             let TieNodes { parts, corners } = parts_of(tie, &nodes);
-            (Tie::new(parts, DVec3::ZERO), corners)
+            (Tie::new(parts, tie.nodes.len(), DVec3::ZERO), corners)
         };
         let (ties, corners): (Vec<Tie>, Vec<[u32; 3]>) = glue.ties.iter().map(of_tie).unzip();
         let vectors = || vec![DVec3::ZERO; nodes.len()];

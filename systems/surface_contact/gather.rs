@@ -220,7 +220,7 @@ pub(super) fn gather<T: Scalar>(
         // as it is kept
         let allowed = T::from_f64(allowed(touch, outside, went, &contacts.in_step(of, first, clock))).to_f64();
         seen.push(Seen { point, outside, allowed });
-        nodes.meet(contacts, (faced, touch, parts), &seen[seen.len() - 1], clock, batch);
+        nodes.meet((contacts, of_bodies), (faced, touch, parts), &seen[seen.len() - 1], clock, batch);
     });
     for &Seen { point, outside, allowed } in seen.iter().flatten() {
         let kept = contacts.kept(point);
@@ -256,7 +256,7 @@ impl Nodes<'_> {
     #[inline(always)] // likewise
     fn meet<T: Scalar>(
         &self,
-        contacts: &SurfaceContacts,
+        (contacts, bodies): (&SurfaceContacts, &[BodySlices<'_, T>]),
         (faced, touch, of_first): (&Faced, &[T], Parts),
         &Seen { point: number, outside, allowed }: &Seen,
         clock: &Clock,
@@ -269,11 +269,12 @@ impl Nodes<'_> {
         for (facing, is_first) in both.into_iter().filter_map(|(facing, is_first)| Some((facing.as_ref()?, is_first))) {
             let body = surface.triangles.bodies[facing.triangle as usize];
             let Some(meeting) = contacts.meeting(point.body, body) else { continue };
-            let Meeting { friction, spring, edge, .. } = meeting;
+            let Meeting { friction, thickness, spring, edge, .. } = meeting;
+            let turned = contacts.turned(thickness, facing.triangle, bodies);
             let parts = if is_first { of_first } else { self.parts(surface, point, facing) };
             // what touched nothing and does not slip is held by the static coefficient
             let still = || {
-                let before = parts.step(self.earlier);
+                let before = parts.step(self.earlier) - turned;
                 (before - facing.normal * facing.normal.dot(before)).length() <= STILL * edge
             };
             let is_held = state == STICKS || state != SLIDES && friction[0] != friction[1] && still();
@@ -291,7 +292,7 @@ impl Nodes<'_> {
             self.add(
                 batch,
                 parts,
-                ((facing.normal, gap), (friction, slip)),
+                ((facing.normal, gap), (friction, slip - turned)),
                 (spring, outside - allowed, within),
                 Met { point: number, is_first, outside },
             );

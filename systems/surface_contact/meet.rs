@@ -30,6 +30,30 @@ impl SurfaceContacts {
         InStep { largest: self.surface.motion.largest, settling }
     }
 
+    /// How far the end of a normal as long as a thickness (m) has gone in the last step as a triangle turned (m): a
+    /// point that stays above the same place goes as far along the face.
+    pub(super) fn turned<T: Scalar>(&self, thickness: f64, triangle: u32, bodies: &[BodySlices<'_, T>]) -> DVec3 {
+        if thickness <= 0.0 {
+            return DVec3::ZERO;
+        }
+        let corners = self.surface.triangles.triangles[triangle as usize];
+        let [a, b, c] = corners.map(|node| self.surface.places[node as usize]);
+        let [by_a, by_b, by_c] = corners.map(|node| {
+            let (body, row) = self.surface.nodes[node as usize];
+            vector(bodies[body as usize].step, row as usize)
+        });
+        // sides in the middle of the step, and how they changed in it
+        let [by_b, by_c] = [by_b - by_a, by_c - by_a];
+        let [b, c] = [b - a - 0.5 * by_b, c - a - 0.5 * by_c];
+        let (across, change) = (b.cross(c), by_b.cross(c) + b.cross(by_c));
+        let size = across.length();
+        if size <= 0.0 {
+            return DVec3::ZERO;
+        }
+        let normal = across / size;
+        (change - normal * normal.dot(change)) * (thickness / size)
+    }
+
     /// Where a point's numbers are.
     pub(super) fn kept(&self, point: u32) -> Kept {
         self.surface.kept(point)

@@ -29,6 +29,8 @@ pub(super) struct Pair {
     allowed: f64,
     /// What is missing to the gap (m) beside the places of the nodes along the normal.
     offset: f64,
+    /// How far a `thickness` has turned with the face (m), of free nodes in the step before: it is not slip.
+    turned: DVec3,
 }
 
 impl Pair {
@@ -113,8 +115,13 @@ pub(super) fn pair<T: Scalar>(
                 (false, Some(springs)) => borne(contacts, (point, facing.normal, gap), (&meeting, springs), bodies),
                 (false, None) => 0.0,
             };
+            // on the way to rest nobody knows it before nodes are where they will be
+            let turned = match clock.relaxation {
+                None => contacts.turned(meeting.thickness, facing.triangle, bodies),
+                Some(_) => DVec3::ZERO,
+            };
             let (point, normal) = (number, facing.normal);
-            add(Pair { meeting, point, first, normal, nodes, allowed, offset: 0.0 }, gap);
+            add(Pair { meeting, point, first, normal, nodes, allowed, offset: 0.0, turned }, gap);
         }
     }
     // nothing is known of how edges slipped that cross
@@ -133,6 +140,7 @@ pub(super) fn pair<T: Scalar>(
             nodes,
             allowed: 0.0,
             offset: 0.0,
+            turned: DVec3::ZERO,
         };
         add(pair, crossing.gap - meeting.thickness);
     }
@@ -264,7 +272,8 @@ fn add<T: Scalar>(
     let kept = contacts.kept(point);
     let touch = bodies[kept.body].kept(kept);
     let state = touch[4].to_f64();
-    let slip = if first && state >= STICKS { vector_at(touch, 0) } else { DVec3::ZERO };
+    let kept = if first && state >= STICKS { vector_at(touch, 0) } else { DVec3::ZERO };
+    let slip = kept - pair.turned;
     let friction = meeting.friction[usize::from(state == SLIDES)];
     let mut parts = Parts::default();
     for &(node, weight) in &pair.nodes {

@@ -121,7 +121,7 @@ impl ToolContacts {
     ) -> Option<Press> {
         let contact = &self.tools[tool];
         let spring = contact.spring?;
-        let ToolInStep { pose, change, .. } = &step.tools[tool];
+        let ToolInStep { pose, earlier, change, .. } = &step.tools[tool];
         let of_tool = pose.inverse(at.place);
         let (distance, normal) = contact.geometry.distance(of_tool);
         if distance > 0.0 {
@@ -132,10 +132,17 @@ impl ToolContacts {
         if normal.dot(at.free * normal) <= 1e-9 {
             return None;
         }
-        let relative = at.step - change.place(of_tool);
+        // how it goes past the tool, and how it was rubbed, turn with the tool
+        let turned = |vector: DVec3| pose.rotation * (earlier.rotation.transpose() * vector);
+        let relative = turned(at.step - change.place(of_tool));
         let press = spring.press(springs, at.mass, distance, [normal.dot(relative), step.time]);
         let friction = contact.friction[usize::from(last.state == SLIDES)];
-        let slip = along_surface(relative, normal) - along_surface(last.force, normal) / press.stiffness;
+        let mut slip = along_surface(relative, normal);
+        if friction > 0.0 && last.state != 0.0 {
+            let before = contact.geometry.distance(earlier.inverse(at.place - at.step)).1;
+            let rubbed = turned(along_surface(last.force, earlier.rotation * before));
+            slip -= along_surface(rubbed, normal) / press.stiffness;
+        }
         let rubbing = press.rub(normal, slip, friction);
         let (force, slopes) = press.with(normal, &rubbing);
         let state = if rubbing.slides { SLIDES } else { STICKS };

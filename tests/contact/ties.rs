@@ -19,7 +19,7 @@ fn random_set(random: &mut Rng) -> TieSet {
         let weights = [random.f64(), random.f64(), random.f64()];
         let sum: f64 = weights.iter().sum();
         let others = all[1..4].iter().zip(weights).map(|(&node, weight)| (node, -weight / sum));
-        Tie::new(std::iter::once((all[0], 1.0)).chain(others).collect(), DVec3::ZERO)
+        Tie::new(std::iter::once((all[0], 1.0)).chain(others).collect(), 1, DVec3::ZERO)
     });
     let ties = ties.collect();
     TieSet::new(ties, steps, responses)
@@ -55,7 +55,19 @@ fn a_single_tie_is_exact_in_one_sweep() {
     let steps = vec![DVec3::new(1.0, 2.0, 3.0), DVec3::new(-1.0, 0.5, 0.0)];
     let responses = vec![DVec3::splat(0.5), DVec3::splat(0.25)];
     let off = DVec3::new(0.1, 0.0, -0.2);
-    let mut set = TieSet::new(vec![Tie::new(vec![(0, 1.0), (1, -1.0)], off)], steps, responses);
+    let mut set = TieSet::new(vec![Tie::new(vec![(0, 1.0), (1, -1.0)], 1, off)], steps, responses);
     set.solve(1);
     assert!((set.ties[0].relative(&set.steps) + off).length() < 1e-15, "{set:?}");
+}
+
+/// Over a gap the other end lies beyond its nodes, and one of them has a weight of the sign of the point's. The
+/// stiffness that solvers know of a tie is that of the mass of its point.
+#[test]
+fn the_spring_of_a_tie_over_a_gap_weighs_its_point_alone() {
+    let (steps, responses) = (vec![DVec3::ZERO; 4], vec![DVec3::ONE; 4]);
+    let parts = vec![(0, 0.5), (1, 0.5), (2, -1.4), (3, 0.4)];
+    let off = DVec3::new(0.1, 0.0, -0.2);
+    let mut set = TieSet::new(vec![Tie::new(parts, 2, off)], steps, responses);
+    set.press(&[2.0, 4.0, 50.0, 1000.0], 10.0);
+    assert!((set.ties[0].force + 30.0 * off).length() < 1e-13, "{set:?}");
 }
