@@ -34,6 +34,10 @@ pub struct GuardMemory {
     /// What the formula of implicit steps has taken so far (J); negative where it has made energy.
     #[serde(default)]
     pub(crate) scheme_loss: f64,
+    /// What implicit steps have turned over so far (J): of each step the work of loads on free axes, that on elements
+    /// there, and what damping took, whichever way they went.
+    #[serde(default)]
+    pub(crate) turned_over: f64,
     /// The longest step of all checks (s).
     #[serde(default)]
     pub longest_step: f64,

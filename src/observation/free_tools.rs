@@ -129,6 +129,21 @@ pub(super) fn kinetic(world: &World) -> f64 {
     tools.all.iter().zip(&motions.all).map(|(tool, state)| state.motion.kinetic(&tool.inertia)).sum()
 }
 
+/// What gravity would do on all of them over ways as long as their radii of gyration (J): of tools that rest on
+/// something nothing else tells what is much.
+pub(super) fn weight_energy(world: &World) -> f64 {
+    let (Some(tools), Some(signals)) = (world.get_resource::<FreeTools>(), world.get_resource::<Signals>()) else {
+        return 0.0;
+    };
+    let of_tool = |tool: &FreeTool| {
+        let gravity = tool.gravity.iter().map(|&slot| DVec3::from_slice(&signals.values()[slot][..3])).sum::<DVec3>();
+        let moments = tool.inertia.moments;
+        let sum = moments.x_axis.x + moments.y_axis.y + moments.z_axis.z;
+        gravity.length() * (0.5 * sum * tool.inertia.mass).sqrt()
+    };
+    tools.all.iter().map(of_tool).sum()
+}
+
 /// Adds to the energies of bodies those of free tools: work done on them counts with that of loads, where it is
 /// counted.
 pub(super) fn add_energies(world: &World, sum: &mut Energies) {

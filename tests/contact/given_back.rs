@@ -1,6 +1,7 @@
 //! What sinks in is pushed out again, and may have more energy than it came with: that is told, and sweeps mend it.
 
-use crate::configurations::cpu_and_long_gpu;
+use crate::configurations::{cpu_and_long_gpu, near};
+use glam::DVec3;
 
 /// Two free cubes of which one meets the face of the other with an edge. One sweep leaves nodes of the edge inside, and
 /// when some have let go the rest of them yields less, and is thrown out.
@@ -51,5 +52,50 @@ fn what_begins_inside_and_is_pushed_out_is_warned_of() {
         assert_eq!(told.len(), 1, "{}: {warnings:?}", run.name);
         let text = &told[0].message;
         assert!(text.contains("more than it took") && text.contains("more `sweeps`"), "{}: {text}", run.name);
+    }
+}
+
+/// Tools have no sweeps: of them another way out is told.
+#[test]
+fn where_tools_alone_give_back_more_nobody_is_sent_to_sweeps() {
+    for run in cpu_and_long_gpu() {
+        let mut simulation = run.start(
+            "(duration: 0.05, bodies: {\"b\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (4, 4, 4)), material: \"m\")},
+            materials: {\"m\": (density: 1000, neo_hookean: Young(young: 5e3, poisson: 0.4), damping: 10)},
+            constraints: [Fixed(on: Set(\"z0\"))],
+            tools: {\"ball\": (shape: Sphere(radius: 0.004), at: (0.01, 0.01, 0.025),
+                moves: [(displacement: (0, 0, -0.004), curve: Smooth(end: 0.04))])},
+            contacts: [Tool(tool: \"ball\", thin: true)])",
+        );
+        simulation.advance_to(0.05).unwrap();
+        simulation.observe().unwrap();
+        let warnings = simulation.summary("").unwrap().guards.warnings;
+        let told: Vec<_> = warnings.iter().filter(|notice| notice.criterion == "contact").collect();
+        assert_eq!(told.len(), 1, "{}: {warnings:?}", run.name);
+        let text = &told[0].message;
+        assert!(text.contains("integration.safety") && !text.contains("sweeps"), "{}: {text}", run.name);
+    }
+}
+
+/// A free box that friction holds on a slope has next to no energy: what contact is inexact by was told of as 5.8e9 % of
+/// the largest so far.
+#[test]
+fn what_holds_a_free_box_that_rests_is_not_warned_of() {
+    for run in cpu_and_long_gpu() {
+        let mut simulation = run.start(
+            "(duration: 0.15, integration: (safety: 0.5),
+            bodies: {\"a\": (mesh: Box(size: (0.06, 0.02, 0.004), cells: (24, 8, 2), elements: Hex8MeanDilatation), material: \"m\",
+                translate: (-0.01, -0.01, -0.004))},
+            materials: {\"m\": (density: 1000, neo_hookean: Young(young: 1e4, poisson: 0.4))},
+            loads: [Gravity(acceleration: (4.905, 0, -8.4957))], constraints: [Fixed(body: \"a\", on: All)],
+            tools: {\"t\": (shape: Box(size: (0.01, 0.008, 0.003)), at: (0, 0, 0.0015), free: (density: 1500))},
+            contacts: [Tool(tool: \"t\", friction: 0.7, thin: true)])",
+        );
+        simulation.advance_to(0.15).unwrap();
+        let (tool, weight) = (simulation.tool("t").unwrap(), 3.6e-4 * 8.4957);
+        near(&format!("{}: moved", run.name), tool.place.distance(DVec3::new(0.0, 0.0, 0.0015)), 0.0, 0.01, 1e-3);
+        near(&format!("{}: held", run.name), tool.force.z, weight, weight, 0.05);
+        let warnings = simulation.summary("").unwrap().guards.warnings;
+        assert!(warnings.iter().all(|notice| notice.criterion != "contact"), "{}: {warnings:?}", run.name);
     }
 }

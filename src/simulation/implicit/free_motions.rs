@@ -46,8 +46,7 @@ pub(super) fn free_motions(world: &World, axes: &Axes, free: &[bool]) -> Vec<Fre
             let middle = piece.iter().map(|&node| place(node)).sum::<DVec3>() / piece.len() as f64;
             let first = range.start / 3;
             let nodes: Vec<(usize, DVec3)> = piece.iter().map(|&node| (first + node, place(node) - middle)).collect();
-            let size = nodes.iter().map(|(_, arm)| arm.length()).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
-            for [rotation, translation] in without_constraint(&nodes, size, free) {
+            for [rotation, translation] in without_constraint(&nodes, reach(&nodes), free) {
                 let (body, nodes) = (name.clone(), nodes.clone());
                 motions.push(FreeMotion {
                     body,
@@ -63,6 +62,11 @@ pub(super) fn free_motions(world: &World, axes: &Axes, free: &[bool]) -> Vec<Fre
         }
     }
     motions
+}
+
+/// How far nodes are from the middle (m) at most; more than nothing.
+fn reach(nodes: &[(usize, DVec3)]) -> f64 {
+    nodes.iter().map(|(_, arm)| arm.length()).fold(f64::MIN_POSITIVE, f64::max)
 }
 
 /// Whether springs of contact or threads may hold a body, and whether glue may.
@@ -149,8 +153,7 @@ impl fmt::Display for FreeMotion {
             let [x, y, z] = v.to_array().map(|x| rounded(x, digits));
             format!("({x}, {y}, {z})")
         };
-        let size = self.nodes.iter().map(|(_, arm)| arm.length()).fold(0.0, f64::max);
-        let (of_places, of_directions) = (digits_beside(size), digits_beside(1.0));
+        let (of_places, of_directions) = (digits_beside(reach(&self.nodes)), digits_beside(1.0));
         let what = match self.pieces {
             1 => format!("body {}", self.body),
             _ => format!("a piece of body {} about {}", self.body, in_words(self.middle, of_places)),

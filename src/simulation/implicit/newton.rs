@@ -2,6 +2,7 @@
 //! along the way (Matthies & Strang 1979).
 
 mod along;
+mod rounding;
 mod search;
 
 pub use along::PathPoint;
@@ -276,29 +277,6 @@ impl Newton<'_, '_> {
         Found { left, solved, remaining: if size > 0.0 { remaining } else { 0.0 } }
     }
 
-    /// Whether a residual of such a norm at w is no more than what rounding makes.
-    fn is_rounding(&mut self, size: f64) -> Result<bool, Error> {
-        self.forces_at_w()?;
-        Ok(size <= self.rounding()?)
-    }
-
-    /// About what rounding makes of the residual (N): of a displacement the last digit, times the norm of its row of K,
-    /// which a product with signs shows, and its inertia. The forces at w must be known.
-    fn rounding(&mut self) -> Result<f64, Error> {
-        let Self { trial, settings, h, motion, space, .. } = self;
-        let Workspace { correction, net, vectors: Vectors { direction, image }, .. } = &mut **space;
-        let place = Place { formula: &settings.formula, h: *h, motion, correction, beyond: None };
-        fill_with_signs(direction, &motion.free);
-        difference(trial, &place, net, direction, image)?;
-        let digit = if self.is_f64() { f64::EPSILON } else { f64::from(f32::EPSILON) };
-        let (place, rows) = (self.place(), &self.space.vectors.image);
-        let inertia = self.motion.inertia(&self.settings.formula, self.h);
-        let size = |axis: usize| place.displacement(axis).abs().max(place.correction(axis).abs());
-        let free = (0..self.motion.free.len()).filter(|&axis| self.motion.free[axis]);
-        let square: f64 = free.map(|axis| ((rows.get(axis).abs() + inertia.of(axis / 3)) * size(axis)).powi(2)).sum();
-        Ok(digit * square.sqrt())
-    }
-
     fn is_f64(&self) -> bool {
         self.trial.axes.precision() == Precision::F64
     }
@@ -333,11 +311,15 @@ impl Newton<'_, '_> {
     /// p ≈ A⁻¹ b on free axes; `moves`: where held axes still have to go.
     fn solve_linear(&mut self, tolerance: f64, moves: bool) -> Result<Way, Lost> {
         self.set_right(moves)?;
-        let Self { trial, space, unresisted, .. } = self;
-        let fields = unresisted.fields(&space.correction, &space.net, trial.springs);
-        fields.iter().for_each(|field| field.take_out(&mut space.residual));
+        let Self { trial, motion, space, unresisted, .. } = self;
+        let fields = unresisted.fields(&space.correction, (&space.net, &motion.free), trial.springs);
+        fields.iter().for_each(|field| field.take_out_of_forces(&mut space.residual, &motion.free));
         let Solved { ended, iterations, along } = self.conjugate_gradients(tolerance)?;
-        fields.iter().for_each(|field| field.take_out(&mut self.space.p));
+        // what goes with held axes is no motion that nothing resists
+        let Workspace { to_go, p, .. } = &mut *self.space;
+        to_go.add(1.0, p);
+        fields.iter().for_each(|field| field.take_out_of_way(p));
+        to_go.add(-1.0, p);
         self.report.newton_iterations += 1;
         self.report.negative_curvatures += u64::from(ended == Ended::NegativeCurvature);
         if ended == Ended::NotFinite || !along.is_finite() {

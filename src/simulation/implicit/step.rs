@@ -15,7 +15,7 @@ use super::springs::Springs;
 use super::step_control::StepControl;
 use super::to_go::ToGo;
 use super::trial::Trial;
-use super::work::{add_internal_work, add_work, taken_by_formula};
+use super::work::{add_internal_work, add_work, note_formula};
 use crate::components::*;
 use crate::error::{Criterion, Error};
 use crate::observation::Observer;
@@ -201,10 +201,7 @@ impl Implicit {
             grasped.note(trial.world, &place, &iterations.space.net, Some(&iterations.kept.forces));
             let count = if *works { add_work } else { add_internal_work };
             count(trial.world, axes, &iterations.kept.forces, &place);
-            let taken_by_it = taken_by_formula(trial.world, axes, &iterations.kept.forces, &place);
-            if let Some(mut memory) = trial.world.get_resource_mut::<GuardMemory>() {
-                memory.scheme_loss += taken_by_it;
-            }
+            note_formula(trial.world, axes, &iterations.kept.forces, &place);
             place.arrive(axes, trial.world);
         }
         iterations.count(trial.count);

@@ -23,7 +23,8 @@ pub(super) fn add_internal_work(world: &mut World, axes: &Axes, before: &ForcesB
     }
 }
 
-/// What a step did at an axis (J).
+/// What a step did at an axis, or at all of them (J).
+#[derive(Default)]
 struct Spent {
     by_loads: f64,
     on_elements: f64,
@@ -49,11 +50,25 @@ impl Spent {
     fn by_formula(&self) -> f64 {
         self.by_loads - self.on_elements - self.damped - self.kinetic
     }
+
+    /// What went somewhere else, whichever way.
+    fn turned_over(&self) -> f64 {
+        self.by_loads.abs() + self.on_elements.abs() + self.damped.abs()
+    }
+
+    /// Adds another axis.
+    fn add(&mut self, other: &Self) {
+        self.by_loads += other.by_loads;
+        self.on_elements += other.on_elements;
+        self.damped += other.damped;
+        self.kinetic += other.kinetic;
+    }
 }
 
-/// What a step's formula takes of all free axes (J), as [`add_work`] has it node by node.
-pub(super) fn taken_by_formula(world: &World, axes: &Axes, before: &ForcesBefore, place: &Place<'_>) -> f64 {
-    let mut sum = 0.0;
+/// Adds up for the guards what a step's formula takes of all free axes, as [`add_work`] has it node by node, and what
+/// is turned over there.
+pub(super) fn note_formula(world: &mut World, axes: &Axes, before: &ForcesBefore, place: &Place<'_>) {
+    let mut all = Spent::default();
     for (body, range) in axes.each() {
         let (internal, external) = (world.get::<InternalForce>(body), world.get::<ExternalForce>(body));
         let accelerations = world.get::<Acceleration>(body);
@@ -61,10 +76,13 @@ pub(super) fn taken_by_formula(world: &World, axes: &Axes, before: &ForcesBefore
             let at = axis - range.start;
             let acceleration = accelerations.map_or(0.0, |column| column.get(at));
             let forces = [internal.map_or(0.0, |column| column.get(at)), external.map_or(0.0, |column| column.get(at))];
-            sum += Spent::at(place, before, axis, (acceleration, forces)).by_formula();
+            all.add(&Spent::at(place, before, axis, (acceleration, forces)));
         }
     }
-    sum
+    if let Some(mut memory) = world.get_resource_mut::<GuardMemory>() {
+        memory.scheme_loss += all.by_formula();
+        memory.turned_over += all.turned_over();
+    }
 }
 
 /// Adds up what a step did. Forces work with the mean of those at both ends: of linear bodies that is what they
