@@ -186,6 +186,14 @@ impl std::fmt::Display for NotConverged {
             );
         }
         let (of, before) = if self.at_start { ("`start`", "the motion cannot begin: ") } else { ("the analysis", "") };
+        if let Some(flies) = &self.equilibrium.flies_away {
+            return write!(
+                f,
+                "{before}no equilibrium after {} steps: {flies}, and nothing holds it. Hold it under `constraints` or \
+                 `attachments`, or by `friction`",
+                self.steps
+            );
+        }
         write!(
             f,
             "{before}no equilibrium after {} steps: the residual is {residual:.2e} of loads and reactions ({scale:.3e} N) where \

@@ -204,11 +204,14 @@ fn overlap(
     let is = if found.len() == 1 { "is" } else { "are" };
     let place = if of == inside { "other parts of it".to_string() } else { format!("`{inside}`") };
     let deep = found.iter().filter(|(depth, _)| *depth > DEEPEST * edge).count();
-    if deep > 0 || 2 * found.len() > one.nodes.len() {
+    let most = 2 * found.len() > one.nodes.len();
+    let same = "more than half of the nodes of its surface are: they would not know which way out";
+    if deep > 0 || most {
         let message = format!("{many} of `{of}` {is} inside {place} at the start, {deep} of them deep");
         diagnostics
             .error_at(path, message)
             .note(nodes)
+            .notes(most.then(|| same.to_string()))
             .note(format!("up to half an edge of a face, {:.3e} m, is pushed out", DEEPEST * edge));
     } else {
         let message = format!("{many} of `{of}` {is} inside {place} at the start, the deepest by {deepest:.3e} m");

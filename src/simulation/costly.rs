@@ -1,8 +1,10 @@
 //! Elements and loads that make the step much smaller than usual elements need are told of, with what would help.
 
+use super::load_rates::LoadRates;
 use super::mass_scaling;
 use super::stable_step::Stability;
 use crate::assembly::CriticalElement;
+use crate::components::{Sutured, Sutures};
 use crate::scene::Diagnostics;
 use bevy_ecs::prelude::*;
 
@@ -20,9 +22,8 @@ pub(super) fn warn_of_costly(stability: &Stability, world: &mut World, diagnosti
     if stable >= COSTLY * stability.stable_step
         && let Some(told) = stability.loads.told(stable)
     {
-        diagnostics
-            .warn_at("systems", told)
-            .note("make their forces change less from place to place, or the mesh coarser");
+        let (place, way_out) = source(&stability.loads, world);
+        diagnostics.warn_at(place, told).note(way_out);
     }
     let cost = bound.usual / stable;
     if cost.is_nan() || cost < COSTLY {
@@ -56,6 +57,25 @@ pub(super) fn warn_of_costly(stability: &Stability, world: &mut World, diagnosti
         ));
     }
     warning.note("look at the mesh and the material there");
+}
+
+/// Where in a scene the forces stand that grow so fast, and what to do about it: the stiffest thread, where threads
+/// make the most of it.
+fn source(loads: &LoadRates, world: &mut World) -> (String, &'static str) {
+    let of_nodes = |sutured: &Sutured| {
+        let each = sutured.stiffness.iter().zip(&sutured.masses).filter(|(_, mass)| **mass > 0.0);
+        each.map(|(stiffness, mass)| stiffness / mass).fold(0.0, f64::max)
+    };
+    let of_threads = world.query::<&Sutured>().iter(world).map(of_nodes).fold(0.0, f64::max);
+    let threads = world.get_resource::<Sutures>().into_iter().flat_map(|sutures| &sutures.all);
+    match threads.max_by(|a, b| a.stiffness.total_cmp(&b.stiffness)) {
+        // of what counts for the step: some twice of what they are
+        Some(thread) if 4.0 * of_threads > loads.stiffness() => (
+            format!("attachments[{}].stiffness", thread.number),
+            "give the thread less `stiffness`, or the mesh larger elements",
+        ),
+        _ => ("systems".to_string(), "make their forces change less from place to place, or the mesh coarser"),
+    }
 }
 
 /// An element that sets the step, in a line.

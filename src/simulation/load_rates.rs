@@ -51,6 +51,11 @@ impl LoadRates {
         [self.0.stiffness, self.0.damping].iter().all(|number| number.is_finite() && *number >= 0.0)
     }
 
+    /// By how much they grow with displacements (N/(m kg)), the most of all nodes.
+    pub fn stiffness(&self) -> f64 {
+        self.0.stiffness
+    }
+
     /// The stable step (s) under the loads, from that of the bodies alone.
     pub fn with(&self, step: f64) -> f64 {
         if *self == Self::default() {

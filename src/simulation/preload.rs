@@ -21,6 +21,8 @@ use glam::DVec3;
 use serde::Serialize;
 use web_time::Instant;
 
+/// Pseudo-steps after which it is told how far the search for rest is.
+const TOLD: u64 = 400;
 /// How often rest is sought anew because the step of the motion has become another.
 const RENEWALS: u32 = 4;
 
@@ -103,10 +105,19 @@ impl Simulation {
     /// # Errors
     /// That there is no equilibrium, or none was found; what the GPU says. Then no step is taken.
     pub fn settle(&mut self) -> Result<(), Error> {
+        self.settle_telling(|_, _| {})
+    }
+
+    /// The same, and tells again and again how far it is: the pseudo-steps so far, and what they have come to.
+    ///
+    /// # Errors
+    /// As [`Simulation::settle`].
+    #[doc(hidden)]
+    pub fn settle_telling(&mut self, mut tell: impl FnMut(u64, &Equilibrium)) -> Result<(), Error> {
         let Some(mut analysis) = self.settling.take() else { return Ok(()) };
         let started = Instant::now();
         for turn in 0..=RENEWALS {
-            if let Err(error) = analysis.find_equilibrium() {
+            if let Err(error) = analysis.find_equilibrium(&mut tell) {
                 // who asks again gets no motion from elsewhere
                 self.settling = Some(analysis);
                 return Err(at_start(error));
@@ -136,8 +147,13 @@ impl Simulation {
         Ok((step != springs.step).then_some(step))
     }
 
-    fn find_equilibrium(&mut self) -> Result<(), Error> {
-        self.finish()?;
+    fn find_equilibrium(&mut self, tell: &mut impl FnMut(u64, &Equilibrium)) -> Result<(), Error> {
+        while !self.is_finished() && self.step_count() < self.planned_steps() {
+            self.advance_towards_end(TOLD)?;
+            if let Some(found) = self.equilibrium() {
+                tell(self.step_count(), found);
+            }
+        }
         match self.equilibrium() {
             Some(found) if !found.reached => Err(Error::NotConverged(Box::new(NotConverged {
                 steps: self.step_count(),

@@ -6,12 +6,16 @@
 //! Steps that end in numbers that are not finite or in elements turned inside out are taken back.
 
 mod again;
+mod equilibrium;
+mod flight;
+
+pub use equilibrium::Equilibrium;
 
 use super::ScheduledPass;
 use super::Simulation;
 use super::explain::SolverInUse;
 use super::frequency::largest_eigenvalue;
-use super::implicit::{Attempt, ImplicitSteps, OfForces, PathPoint, Rest, Statics, warn_of_instability};
+use super::implicit::{Attempt, ImplicitSteps, OfForces, Rest, Statics, warn_of_instability};
 use super::residual::{Motion, Residual, State};
 use super::stretch::least_stretch;
 use crate::backend::device::{bring_to_host, send_to_device};
@@ -20,7 +24,6 @@ use crate::error::{Error, NotConverged};
 use crate::observation::Observer;
 use crate::scene::schema::{Analysis, EquilibriumSearch, Scene, SearchMethod};
 use bevy_ecs::prelude::*;
-use serde::Serialize;
 
 /// Steps between two checks of the residual.
 const CHECK_STEPS: u64 = 40;
@@ -42,39 +45,6 @@ const TURN: f64 = 3.0;
 /// A residual that has not fallen by a tenth in so many times that the slowest motion needs to fall by e will not fall.
 const PATIENCE: f64 = 30.0;
 
-/// The equilibrium that a static analysis has found, or how far it came.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Equilibrium {
-    /// Whether it is one within the tolerance.
-    pub reached: bool,
-    /// ‖R − F‖ over free axes, as a share of `scale`.
-    pub residual: f64,
-    /// About what rounding of the displacements makes of the residual at least, as a share of `scale`.
-    pub rounding: f64,
-    /// The share that is small enough, beside what rounding makes.
-    pub tolerance: f64,
-    /// ‖R‖ over free axes and ‖F − R‖ over held ones, together (N).
-    pub scale: f64,
-    /// About how far nodes still have to go, as a share of their displacements (root mean squares).
-    pub remaining_motion: f64,
-    /// The body with the largest force that nothing balances, the author's number of its node, and the force (N).
-    pub worst: (String, u64, f64),
-    /// Steps over which loads grew, as planned.
-    pub load_steps: u64,
-    /// How often steps were taken back.
-    pub setbacks: u32,
-    /// Newton's iterations that led there at last; 0 where pseudo-steps did.
-    pub newton_iterations: u64,
-    /// Whether bodies give way along some motion: what is found is an equilibrium, but none that lasts. Known of
-    /// Newton's iterations in f64, where no body is free to move as a whole.
-    pub unstable: bool,
-    /// What loads move and nothing holds, in words, where that is why there is none.
-    pub not_held: Vec<String>,
-    /// The path of equilibria that led there, where one was followed.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub path: Vec<PathPoint>,
-}
-
 /// A static analysis at work.
 pub(super) struct Relaxing {
     pub equilibrium: Equilibrium,
@@ -85,6 +55,8 @@ pub(super) struct Relaxing {
     best: (u64, f64),
     largest_scale: f64,
     largest_displaced: f64,
+    /// Who is farther (m) from where it began flies away.
+    far: f64,
     /// The force scale before anything is squeezed, and the share of it that squeezed elements leave.
     force_scale: f64,
     squeezed: f64,
@@ -133,6 +105,7 @@ impl Relaxing {
         // what rounding leaves of the residual in f32 is some 1e-6
         let reachable = if precision == Precision::F64 { 1e-6 } else { 1e-5 };
         let mut new = Self::new(&search, reachable, load_steps, world);
+        new.far = flight::far(scene, world);
         if search.method == SearchMethod::Newton {
             let reachable = if precision == Precision::F64 { 1e-10 } else { 1e-5 };
             let statics = Statics::new(search.tolerance.unwrap_or(reachable), search.arc, world);
@@ -153,6 +126,7 @@ impl Relaxing {
             best: (0, f64::INFINITY),
             largest_scale: 0.0,
             largest_displaced: 0.0,
+            far: f64::INFINITY,
             force_scale: world.resource::<Clock>().relaxation.map_or(1.0, |relaxation| relaxation.force_scale),
             squeezed: 1.0,
             checks: 0,
@@ -251,6 +225,7 @@ impl Relaxing {
             observer.note_convergence(row)?;
             if share < 1.0 { observer.observe_on_the_way(world) } else { Ok(()) }
         })?;
+        self.stay_near(&now, world)?;
         self.before = now;
         let (found, tolerance) = (&self.equilibrium, self.equilibrium.tolerance);
         let quiet = share >= 1.0
@@ -347,13 +322,15 @@ impl Relaxing {
         let found = &mut self.equilibrium;
         found.scale = scale;
         found.residual = share(residual.square.sqrt(), scale);
+        let moved = if motion.moved > residual.of_places { motion.moved } else { 0.0 };
         // critically damped motion falls by e in 1/a steps
-        let still = motion.moved / (steps.max(1) as f64 * damping.max(1e-9));
+        let still = moved / (steps.max(1) as f64 * damping.max(1e-9));
         // what goes back to rest is displaced by nothing in the end
         self.largest_displaced = self.largest_displaced.max(motion.displaced);
         found.remaining_motion = share(still, motion.displaced.max(1e-3 * self.largest_displaced));
         // where nothing is loaded and nothing is strained there is nothing to be a share of
-        found.rounding = if scale > 0.0 { share(residual.rounding_square.sqrt(), scale) } else { 0.0 };
+        let rounding = (residual.rounding_square + residual.places_square).sqrt();
+        found.rounding = if scale > 0.0 { share(rounding, scale) } else { 0.0 };
         found.worst = residual.worst_in_words(world);
     }
 

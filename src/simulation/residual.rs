@@ -1,8 +1,10 @@
 //! What a static analysis sees of all bodies when it checks: displacements, forces, and what has changed.
 
+use super::rounding::digit_of_places;
 use crate::components::*;
 use crate::elements::rounding;
 use bevy_ecs::prelude::*;
+use glam::DVec3;
 use std::ops::Range;
 
 /// Displacements and forces of all bodies, one after the other in a fixed order.
@@ -33,6 +35,10 @@ pub(super) struct Residual {
     /// What rounding of the displacements may be of `square` (N²): a node's stiffness, which its inertial mass
     /// bounds, times the last digit of its largest displacement.
     pub rounding_square: f64,
+    /// What rounding of places beside may be of it where something touches or is tied (N²).
+    pub places_square: f64,
+    /// The norm of the last digits of these places over free axes (m): a motion within them is none that is known.
+    pub of_places: f64,
     /// Rounding of a number, as a share of it.
     pub digit: f64,
     worst: Option<(Entity, usize, f64)>,
@@ -115,6 +121,28 @@ impl State {
         }
     }
 
+    /// The body of the node that is farthest from where it began, and its way from there (m).
+    pub fn farthest(&self) -> Option<(Entity, DVec3)> {
+        let of_body = |body: &Body| {
+            let ways = body.place.as_chunks::<3>().0.iter().map(|&way| DVec3::from_array(way));
+            let farthest = ways.max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))?;
+            Some((body.entity, farthest))
+        };
+        let each = self.bodies.iter().filter_map(of_body);
+        each.max_by(|(_, a), (_, b)| a.length_squared().total_cmp(&b.length_squared()))
+    }
+
+    /// How far axes that are held have gone at most (m).
+    pub fn told(&self, world: &World) -> f64 {
+        let of_body = |body: &Body| {
+            let Some(held) = world.get::<ConstrainedAxes>(body.entity) else { return 0.0 };
+            let is_held = |axis: usize| held[axis / 3] >> (axis % 3) & 1 == 1;
+            let ways = body.place.iter().enumerate().filter(|(axis, _)| is_held(*axis));
+            ways.fold(0.0, |most: f64, (_, way)| most.max(way.abs()))
+        };
+        self.bodies.iter().map(of_body).fold(0.0, f64::max)
+    }
+
     /// What has changed since another state.
     pub fn motion_since(&self, before: &State, world: &World) -> Motion {
         let mut sum = Motion::default();
@@ -172,7 +200,15 @@ fn rounding_of_elements(body: Entity, world: &World) -> f64 {
 impl Residual {
     /// Of a state.
     pub fn of(state: &State, world: &World) -> Self {
-        let mut sum = Self { square: 0.0, scale_square: 0.0, rounding_square: 0.0, digit: 0.0, worst: None };
+        let mut sum = Self {
+            square: 0.0,
+            scale_square: 0.0,
+            rounding_square: 0.0,
+            places_square: 0.0,
+            of_places: 0.0,
+            digit: 0.0,
+            worst: None,
+        };
         let time_step = world.resource::<Clock>().time_step;
         for body in &state.bodies {
             let net = |i: usize| body.internal[i] - body.load[i];
@@ -183,6 +219,7 @@ impl Residual {
                 Reals::F64(_) => f64::EPSILON,
             };
             let of_elements = rounding_of_elements(body.entity, world);
+            let of_place = digit_of_places(body.entity, world);
             let mass = world.get::<InertialMass>(body.entity);
             let stiffness = |node: usize| mass.map_or(0.0, |mass| mass.get(node)) / (time_step * time_step);
             let mut node = (usize::MAX, 0.0);
@@ -191,6 +228,8 @@ impl Residual {
                 square += part;
                 sum.scale_square += body.load[i] * body.load[i];
                 sum.rounding_square += (of_elements * stiffness(i / 3) * sum.digit * body.place[i]).powi(2);
+                sum.places_square += (stiffness(i / 3) * of_place).powi(2);
+                sum.of_places += of_place * of_place;
                 node = (i / 3, if node.0 == i / 3 { node.1 + part } else { part });
                 if sum.worst.is_none_or(|(.., most)| node.1 > most) {
                     sum.worst = Some((body.entity, node.0, node.1));
@@ -200,6 +239,7 @@ impl Residual {
             // what is not free is held
             sum.scale_square += (all - square).max(0.0);
         }
+        sum.of_places = sum.of_places.sqrt();
         sum
     }
 

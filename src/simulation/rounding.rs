@@ -1,5 +1,6 @@
 //! Far from where a body began, displacements in f32 have too few digits left for strains; and where parts of a scene
-//! are far from each other, places on a GPU have too few for what touches.
+//! are far from each other, places on a GPU have too few for what touches. What touches or is tied to rounding feels
+//! forces that are nothing else.
 
 use super::stiffness::StiffnessTracker;
 use crate::components::*;
@@ -37,9 +38,6 @@ fn largest_rounded(block: &StiffnessTracker, world: &World) -> Option<(Entity, f
 /// that rounding makes gaps of that share of an edge: parts of one scene that are far from each other, copies of a
 /// body too.
 pub(super) fn warn_of_places(world: &mut World) {
-    let farthest = |rest: &RestPosition, reference: DVec3| {
-        rest.0.iter().map(|at| (*at - reference).abs().max_element()).fold(0.0, f64::max)
-    };
     let mut under_tools = world.query::<(&Label, &RestPosition, &ToolContacts)>();
     let of_tools = |(label, rest, tools): (&Label, &RestPosition, &ToolContacts)| {
         (label.0.clone(), "tools", farthest(rest, tools.reference), tools.edge)
@@ -62,6 +60,31 @@ pub(super) fn warn_of_places(world: &mut World) {
             note(part, noise, message, world);
         }
     }
+}
+
+/// How far (m) a coordinate of a body's nodes at rest is from a point at most.
+fn farthest(rest: &RestPosition, reference: DVec3) -> f64 {
+    rest.0.iter().map(|at| (*at - reference).abs().max_element()).fold(0.0, f64::max)
+}
+
+/// The last digit (m) of where a body's nodes are, in f64, in which systems look for what touches and what holds
+/// together; 0 where none looks at them. A displacement in it is known no better, however small it is.
+pub(super) fn digit_of_places(body: Entity, world: &World) -> f64 {
+    let Some(rest) = world.get::<RestPosition>(body) else { return 0.0 };
+    let tools = world.get::<ToolContacts>(body).map(|tools| tools.reference);
+    let surfaces = world.get_resource::<SurfaceContacts>().filter(|contacts| contacts.bodies.contains(&body));
+    let glue = world.get_resource::<Glue>().filter(|glue| glue.bodies.contains(&body));
+    let sutures = world.get_resource::<Sutures>().filter(|_| world.get::<Sutured>(body).is_some());
+    let free = world.get_resource::<FreeTools>().filter(|tools| tools.meet(body));
+    let references = [
+        tools,
+        surfaces.map(|contacts| contacts.reference),
+        glue.map(|glue| glue.reference),
+        sutures.map(|sutures| sutures.reference),
+        free.map(|tools| tools.reference),
+    ];
+    let reach = references.into_iter().flatten().map(|reference| farthest(rest, reference)).fold(0.0, f64::max);
+    f64::EPSILON * reach
 }
 
 fn warn(body: Entity, largest: f64, noise: f64, world: &mut World) {

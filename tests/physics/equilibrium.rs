@@ -344,3 +344,26 @@ fn what_has_no_meaning_at_rest_is_refused() {
     let text = refused("duration: 9, analysis: Static(max_steps: 10, load_steps: 20)");
     assert!(text.contains("`load_steps` must be at most `max_steps`"), "{text}");
 }
+
+/// It is told as soon as it is far away, and not after all steps that are allowed.
+#[test]
+fn a_body_that_flies_away_ends_the_search_and_is_named() {
+    let run: &Configuration = &configurations()[0];
+    for (begins, before) in [("analysis: Static(),", "no equilibrium"), ("start: Equilibrium(),", "the motion cannot")]
+    {
+        let mut simulation = run.start(&format!(
+            "(duration: 1, {begins} materials: {{{MATERIAL}}},
+            bodies: {{\"held\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2)), material: \"m\"),
+                \"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2)), material: \"m\", translate: (0.2, 0, 0))}},
+            constraints: [Fixed(body: \"held\", on: Set(\"z0\"))],
+            loads: [Gravity(acceleration: (0, 0, -9.81))])"
+        ));
+        let error = simulation.finish().unwrap_err();
+        let text = error.to_string();
+        println!("{text}");
+        let Error::NotConverged(report) = error else { panic!("{text}") };
+        assert!(report.steps < 10_000, "{text}");
+        assert!(text.starts_with(before) && text.contains("body b flies away along ("), "{text}");
+        assert!(text.contains("-1.00)") && text.contains("nothing holds it"), "{text}");
+    }
+}

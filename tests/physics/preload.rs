@@ -260,3 +260,17 @@ fn what_glue_and_threads_bear_at_rest_stands_in_the_first_row() {
         }
     }
 }
+
+/// Who waits for it is told how far the search is.
+#[test]
+fn how_far_the_search_for_the_start_is_is_told_on_the_way() {
+    let run = &configurations()[0];
+    let mut simulation = run.start(&block("Tet4", "start: Equilibrium(),", "", ""));
+    let mut told: Vec<(u64, f64)> = Vec::new();
+    simulation.settle_telling(|steps, found| told.push((steps, found.residual))).unwrap();
+    let preload = simulation.preload().unwrap();
+    assert!(told.is_sorted_by(|a, b| a.0 < b.0) && told.iter().all(|(_, residual)| residual.is_finite()), "{told:?}");
+    assert_eq!(told.last().unwrap(), &(preload.steps, preload.equilibrium.residual));
+    // it is at rest, and nothing is left to tell
+    simulation.settle_telling(|steps, _| panic!("told anew, of {steps} steps")).unwrap();
+}

@@ -121,6 +121,16 @@ fn what_is_wrong_with_a_suture_or_a_tie_is_told_where_it_stands() {
     assert!(found.contains("5: warning: nothing breaks on the way to the equilibrium of the start"), "{found}");
 }
 
+/// No system of one's own is sent for.
+#[test]
+fn a_thread_that_makes_the_step_small_is_told_where_it_stands() {
+    let stiff = suture("(0.08, 0.02, 0.1)", "").replace("stiffness: 5", "stiffness: 1e7");
+    let found = told(&stiff, "");
+    assert!(found.contains("5: warning: forces on nodes make ") && found.contains("less `stiffness`"), "{found}");
+    let usual = told(&suture("(0.08, 0.02, 0.1)", ""), "");
+    assert!(!usual.contains("forces on nodes make"), "{usual}");
+}
+
 #[test]
 fn what_is_wrong_with_glue_is_told_where_it_stands() {
     let faces = "on: Surface(normal: (0, 0, 1)), onto: Surface(normal: (0, 0, -1))";

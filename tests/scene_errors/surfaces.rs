@@ -82,6 +82,23 @@ fn points_are_nodes_or_those_of_faces() {
 }
 
 #[test]
+fn friction_of_edges_that_cross_in_implicit_steps_is_warned_of() {
+    let told = |words: &str, solver: &str| {
+        let contact = format!("Between(bodies: (\"a\", \"b\"), {words} law: Penalty(share: 1))], {solver} loads: [");
+        told(&contact, "(0, 0, 0.11)")
+    };
+    let implicit = "solver: Implicit(step: 0.01),";
+    let found = told("edges: true, friction: 0.3,", implicit);
+    assert!(found.contains("5: warning: in implicit steps what should stick slides where edges cross"), "{found}");
+    for (words, solver) in
+        [("edges: true,", implicit), ("friction: 0.3,", implicit), ("edges: true, friction: 0.3,", "")]
+    {
+        let found = told(words, solver);
+        assert!(!found.contains("edges cross"), "{words} {solver}: {found}");
+    }
+}
+
+#[test]
 fn springs_are_as_stiff_as_the_step_allows() {
     let law = |law: &str| format!("Between(bodies: (\"a\", \"b\"), law: {law})");
     let apart = "(0, 0, 0.11)";
@@ -194,7 +211,11 @@ fn bodies_in_each_other_at_the_start_are_told_with_their_nodes() {
     let deep = told(MEET, "(0.01, 0.01, 0.08)");
     assert!(deep.contains("error: ") && deep.contains("of `a` are inside `b` at the start, "), "{deep}");
     assert!(deep.contains("up to half an edge of a face"), "{deep}");
-    assert!(told(MEET, "(0, 0, 0)").contains("error"), "{}", told(MEET, "(0, 0, 0)"));
+    assert!(!deep.contains("more than half of the nodes"), "{deep}");
+    // on each other's surface nobody is deep, and yet they are refused
+    let same = told(MEET, "(0, 0, 0)");
+    assert!(same.contains("error") && same.contains("0 of them deep | nodes: "), "{same}");
+    assert!(same.contains("more than half of the nodes of its surface are"), "{same}");
 }
 
 #[test]

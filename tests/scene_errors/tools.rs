@@ -149,6 +149,9 @@ fn a_thin_tool_that_is_meant_is_not_warned_of() {
 fn friction_in_a_static_analysis_is_warned_of() {
     let found = told(ROD, "Tool(tool: \"rod\", friction: 0.3)", "analysis: Static(),");
     assert!(found.contains("rest with friction depends on the way there"), "{found}");
+    assert!(found.contains("take some 400 for each edge of its way"), "{found}");
+    let found = told(ROD, "Tool(tool: \"rod\", friction: 0.3)", "analysis: Static(method: Newton),");
+    assert!(!found.contains("load_steps"), "{found}");
 }
 
 #[test]
@@ -335,4 +338,25 @@ fn a_path_that_turns_without_end_is_refused() {
     assert!(said.contains("error: the tool turns 1111 times on its way: 1000 are allowed"), "{said}");
     assert_eq!(told(&rod(360.0), TOUCH, "integration: (step: 1e-5),"), "");
     assert!(told(&rod(1e300), TOUCH, "").contains("times on its way"));
+}
+
+#[test]
+fn a_path_without_places_and_a_name_that_nothing_can_be_called_by_are_refused() {
+    let said = told("(shape: Capsule(length: 0.2, radius: 0.06), at: (0.05, 0.05, 0.11), path: [])", TOUCH, "");
+    assert!(said.contains("4: error: the path has no places | leave `path` out"), "{said}");
+    let named = |name: &str| {
+        let text = format!(
+            "(duration: 0.1, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4)), material: \"m\")}},
+materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
+constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))],
+tools: {{\"{name}\": {ROD}}},
+contacts: [Tool(tool: \"{name}\")])"
+        );
+        told_of(&text, std::path::Path::new("."))
+    };
+    for name in ["", "a/b", ".rod"] {
+        let wanted = format!("4: error: the tool `{name}` needs another name: programs and tables know it by that");
+        assert!(named(name).contains(&wanted), "{}", named(name));
+    }
+    assert_eq!(named("rod-1"), "");
 }

@@ -25,6 +25,7 @@ pub fn command(arguments: &CheckArguments) -> Outcome {
     terminal::aside(&diagnostics.render(Paint::of_stderr().is_on()));
     let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
     let mut simulation = progress::during("building the simulation", || Simulation::new(&scene, &options))?;
+    progress::settle(&mut simulation)?;
     let advice = progress::during("looking for cheaper steps", || advice::implicit(&scene, &mut simulation))?;
     if arguments.json {
         let text = serde_json::to_string_pretty(&facts(&mut simulation, advice.as_ref())?)

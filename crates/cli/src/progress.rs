@@ -2,7 +2,7 @@
 
 use super::{terminal, wording};
 use indicatif::{ProgressBar, ProgressStyle};
-use sinew::Equilibrium;
+use sinew::{Equilibrium, Error, Simulation};
 use std::time::{Duration, Instant};
 
 /// Time between two lines where there is no terminal.
@@ -74,6 +74,17 @@ impl Progress {
             bar.finish_and_clear();
         }
     }
+}
+
+/// Brings bodies to rest where a scene begins so, and tells how far that is.
+///
+/// # Errors
+/// As [`Simulation::settle`].
+pub fn settle(simulation: &mut Simulation) -> Result<(), Error> {
+    let mut progress = Progress::begin(0, 0.0, true);
+    let settled = simulation.settle_telling(|steps, found| progress.tell_residual(steps, found));
+    progress.end();
+    settled
 }
 
 /// Shows that something goes on whose end cannot be told, while `work` is done.

@@ -102,7 +102,7 @@ pub fn run(
     }
     tell_of_inputs(&simulation);
     if from.is_none() && scene.scene.start != InitialState::Undeformed {
-        progress::during("bringing the bodies to rest", || simulation.settle())?;
+        progress::settle(&mut simulation)?;
     }
     let mut folder = Folder::create_for(path, &scene.path.display().to_string())?;
     for picture in PICTURES {

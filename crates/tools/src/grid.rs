@@ -78,8 +78,8 @@ impl DistanceGrid {
     /// than three spacings away. The same bits on any number of threads.
     ///
     /// # Errors
-    /// When the surface is not closed, crosses itself or has no volume, and when the grid would have more points than
-    /// [`Self::MOST_NODES`].
+    /// When the surface is not closed, crosses itself or has no volume, when the grid would have more points than
+    /// [`Self::MOST_NODES`], and when it is so coarse that it has nothing of the surface.
     pub fn new(surface: &Triangles, spacing: f64) -> Result<Self, SurfaceError> {
         let closed = Closed::new(surface)?;
         let bounds = closed.surface.bounds();
@@ -111,7 +111,7 @@ impl DistanceGrid {
         grid.thinnest = grid.halfway().max(0.5 * spacing).min(grid.depth());
         let (farthest, mean) = grid.off(&closed.surface);
         grid.surface_error = farthest;
-        let lost = Lost::of(&grid, &closed, &tree);
+        let lost = Lost::of(&grid, &closed, &tree)?;
         grid.notes = closed.notes;
         if mean > COARSE * spacing {
             grid.notes.push(format!(

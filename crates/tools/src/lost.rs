@@ -5,6 +5,7 @@ use super::grid::DistanceGrid;
 use super::tree::Tree;
 use glam::DVec3;
 use rayon::prelude::*;
+use sinew_mesh::SurfaceError;
 
 /// So deep (spacings) a grid is asked whether it has something there. Around a place farther from a surface than
 /// √3/2 of them there is a point of the grid inside.
@@ -23,13 +24,12 @@ const THROUGH: f64 = 0.1;
 /// Halvings of a spacing until a radius is known.
 const HALVINGS: usize = 12;
 
-/// A part that is lost.
-pub(super) enum Lost {
-    /// Every place of the surface.
-    All,
-    /// Of that place (m) which is farthest from what the grid has: how far (m), and the radius (m) of the largest ball
-    /// that fits there.
-    Part { at: DVec3, beyond: f64, radius: f64 },
+/// A part that is lost: of that place (m) which is farthest from what the grid has, how far (m), and the radius (m) of
+/// the largest ball that fits there.
+pub(super) struct Lost {
+    at: DVec3,
+    beyond: f64,
+    radius: f64,
 }
 
 /// A place of the surface (m), and its normal.
@@ -38,7 +38,10 @@ type Place = (DVec3, DVec3);
 impl Lost {
     /// What a grid has not of its surface, if that is more than the blunted edges that are to be expected. Places no
     /// more than a spacing apart are looked at one by one.
-    pub fn of(grid: &DistanceGrid, closed: &Closed, tree: &Tree) -> Option<Self> {
+    ///
+    /// # Errors
+    /// That it has nothing of it.
+    pub fn of(grid: &DistanceGrid, closed: &Closed, tree: &Tree) -> Result<Option<Self>, SurfaceError> {
         let count = closed.surface.triangles.len();
         let of_triangle = |triangle: usize| places(closed, triangle, grid.spacing());
         let with_fate = |place: Place| (place, is_kept(grid, tree, place));
@@ -47,7 +50,7 @@ impl Lost {
             all.iter().filter(|(_, is_kept)| *is_kept == fate).map(|(place, _)| *place).collect()
         });
         if kept.is_empty() {
-            return Some(Self::All);
+            return Err(SurfaceError::Lost { spacing: grid.spacing() });
         }
         let [to_kept, to_lost] = [&kept, &lost].map(|places| tree_of(places));
         let spacing = grid.spacing();
@@ -65,18 +68,13 @@ impl Lost {
         };
         let parts: Vec<(DVec3, f64, f64)> = lost.par_iter().filter_map(part).collect();
         // the first of those that are as far
-        let (at, beyond, radius) = parts.into_iter().reduce(|best, next| if next.1 > best.1 { next } else { best })?;
-        Some(Self::Part { at, beyond, radius })
+        let farthest = parts.into_iter().reduce(|best, next| if next.1 > best.1 { next } else { best });
+        Ok(farthest.map(|(at, beyond, radius)| Self { at, beyond, radius }))
     }
 
     /// What the author of the surface should know; whether a grid can have a spacing is asked.
     pub fn note(&self, spacing: f64, is_possible: impl Fn(f64) -> bool) -> String {
-        let &Self::Part { at, beyond, radius } = self else {
-            return format!(
-                "all of it is thinner than the spacing of the grid, {spacing:.2e} m, and lost: there is nothing inside. \
-                 Take a finer `spacing`"
-            );
-        };
+        let &Self { at, beyond, radius } = self;
         let [x, y, z] = at.to_array().map(|part| format!("{part:.3e}"));
         let advice = if is_possible(radius) {
             format!("a `spacing` of {radius:.1e} m, the radius there, or less has it")

@@ -27,7 +27,7 @@ pub struct Tool {
     pub rotation: Option<DVec3>,
     /// Places on its way, in the order of time; straight and evenly turned between them, at rest before the first and
     /// after the last. About the axis of two of them it turns as far as they say, else by the shorter way round.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub path: Vec<ToolPlace>,
     /// What is added to that, each by a curve of its own.
     #[serde(default)]

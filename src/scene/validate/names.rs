@@ -18,10 +18,13 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
     materials(scene_, validator);
     bodies(scene_, validator);
     for name in scene_.bodies.keys() {
-        file_name(validator, &scene("bodies").name(name), "body", own(name, &parts));
+        fits(validator, &scene("bodies").name(name), ("body", FILES), own(name, &parts));
     }
     for name in scene_.probes.keys() {
-        file_name(validator, &scene("probes").name(name), "probe", own(name, &parts));
+        fits(validator, &scene("probes").name(name), ("probe", FILES), own(name, &parts));
+    }
+    for name in scene_.tools.keys() {
+        fits(validator, &scene("tools").name(name), ("tool", "programs and tables know it by that"), own(name, &parts));
     }
     if scene_.schedule.as_ref().is_some_and(Vec::is_empty) {
         validator
@@ -108,16 +111,16 @@ fn own<'a>(name: &'a str, parts: &[(&str, &str)]) -> &'a str {
     if of_a_part { name.rsplit('.').next().unwrap_or(name) } else { name }
 }
 
-/// Names become names of files and of columns of tables.
-fn file_name(validator: &mut Validator, path: &Path, what: &str, name: &str) {
+/// Why names of bodies and probes must fit.
+const FILES: &str = "files are named after it";
+
+/// Names become names of files and of columns of tables, and words of commands: of what, and why.
+fn fits(validator: &mut Validator, path: &Path, (what, why): (&str, &str), name: &str) {
     let notes = "letters, digits, _ and - do everywhere";
     // what is refused here, an output folder refuses too
-    let fits = |letter: char| letter.is_alphanumeric() || matches!(letter, '_' | '-' | '.' | ' ');
-    if name.is_empty() || name.starts_with('.') || !name.chars().all(fits) {
-        validator
-            .out
-            .error_at(path, format!("the {what} `{name}` needs another name: files are named after it"))
-            .note(notes);
+    let is_usual = |letter: char| letter.is_alphanumeric() || matches!(letter, '_' | '-' | '.' | ' ');
+    if name.is_empty() || name.starts_with('.') || !name.chars().all(is_usual) {
+        validator.out.error_at(path, format!("the {what} `{name}` needs another name: {why}")).note(notes);
     } else if !name.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-') {
         validator
             .out

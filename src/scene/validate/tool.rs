@@ -24,7 +24,7 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
     for (name, found) in &scene_.tools {
         let path = scene("tools").name(name);
         geometry(file, validator, &path, found);
-        tool(validator, &path, found);
+        tool(file, validator, &path, found);
         if let Some(found) = &found.port {
             port(scene_, validator, name, &path.name("port"), found);
         }
@@ -70,7 +70,11 @@ fn geometry(file: &SceneFile, validator: &mut Validator, path: &Path, tool: &Too
     }
 }
 
-fn tool(validator: &mut Validator, path: &Path, tool: &Tool) {
+fn tool(file: &SceneFile, validator: &mut Validator, path: &Path, tool: &Tool) {
+    let way = path.name("path");
+    if tool.path.is_empty() && way.find(&file.tree().root).is_ok() {
+        validator.out.error_at(way, "the path has no places").note("leave `path` out: `at` says where the tool is");
+    }
     for (field, there) in [("at", tool.at.is_some()), ("rotation", tool.rotation.is_some())] {
         if there && !tool.path.is_empty() {
             let message = format!("`{field}` beside a `path`, which says where the tool is at all times");
@@ -309,11 +313,25 @@ fn friction(scene_: &Scene, validator: &mut Validator, path: &Path, contact: &Co
             .error_at(path.name("static_friction"), message)
             .note("what sticks is held at least as well as what slides");
     }
-    if scene_.is_static() && sticking.max(sliding) > 0.0 {
-        validator
+    if sticking.max(sliding) <= 0.0 {
+        return;
+    }
+    if scene_.is_static() {
+        let told = validator
             .out
             .warn_at(path.name("friction"), "rest with friction depends on the way there, and this is one of many")
             .note("a transient analysis goes the way that the scene tells");
+        if !scene_.is_static_by_newton() {
+            told.note("few `load_steps` leave behind what friction carries: take some 400 for each edge of its way");
+        }
+    }
+    let crosses = matches!(contact, Contact::Between { edges: true, .. } | Contact::Itself { edges: true, .. });
+    if scene_.is_implicit() && crosses {
+        let message = "in implicit steps what should stick slides where edges cross, the faster the shorter the step";
+        validator
+            .out
+            .warn_at(path.name("edges"), message)
+            .note("leave `edges` out, or take explicit steps, in which such edges creep a little");
     }
 }
 

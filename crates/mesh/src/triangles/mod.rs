@@ -68,6 +68,15 @@ pub enum SurfaceError {
     /// All of it lies in a plane.
     #[error("the surface has no volume")]
     Flat,
+    /// A grid of its distances has nothing of it.
+    #[error(
+        "all of it is thinner than the spacing of the grid, {spacing:.2e} m: there is nothing inside. Take a finer \
+         `spacing`"
+    )]
+    Lost {
+        /// Between points of the grid (m).
+        spacing: f64,
+    },
     /// It crosses itself, or a part of it is inside out.
     #[error(
         "the surface crosses itself or is inside out in part: at {count} places of the grid inside and outside meet \

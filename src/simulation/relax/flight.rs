@@ -1,0 +1,50 @@
+//! Bodies that nothing holds against what acts on them have no rest: where one flies away the search ends.
+
+use super::super::residual::State;
+use super::Relaxing;
+use crate::components::{Clock, Label, RestPosition};
+use crate::error::Error;
+use crate::scene::schema::{Scene, Tool};
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// How far what comes to rest may go, in lengths of all bodies together, their tools' ways and those of held nodes.
+const FAR: f64 = 100.0;
+
+/// How far (m) nodes may go, where none is told to go anywhere.
+pub(super) fn far(scene: &Scene, world: &mut World) -> f64 {
+    let mut all = world.query::<&RestPosition>();
+    let bodies = length(all.iter(world).flat_map(|rest| rest.0.iter().copied()));
+    FAR * (bodies + scene.tools.values().map(way).sum::<f64>())
+}
+
+/// How far a tool goes (m) at most, but for what turns it.
+fn way(tool: &Tool) -> f64 {
+    let moves = tool.moves.iter().map(|part| {
+        let [least, most] = part.curve.range();
+        part.displacement.length() * least.abs().max(most.abs())
+    });
+    length(tool.places().into_iter().map(|place| place.at)) + moves.sum::<f64>()
+}
+
+/// The diagonal of the box around points (m).
+fn length(points: impl Iterator<Item = DVec3>) -> f64 {
+    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (low, high) = points.fold(none, |(low, high), at| (low.min(at), high.max(at)));
+    low.distance(high)
+}
+
+impl Relaxing {
+    /// Ends the search where a body has gone so far that nothing can hold it.
+    pub(super) fn stay_near(&mut self, now: &State, world: &World) -> Result<(), Error> {
+        let Some((body, way)) = now.farthest().filter(|(_, way)| way.length() > self.far + FAR * now.told(world))
+        else {
+            return Ok(());
+        };
+        let name = world.get::<Label>(body).map(|label| label.0.clone()).unwrap_or_default();
+        let [x, y, z] = way.normalize_or_zero().to_array();
+        let told = format!("body {name} flies away along ({x:.2}, {y:.2}, {z:.2}), {:.3e} m so far", way.length());
+        self.equilibrium.flies_away = Some(told);
+        Err(self.given_up(world.resource::<Clock>().step))
+    }
+}
