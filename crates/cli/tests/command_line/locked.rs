@@ -67,5 +67,7 @@ fn of_many_runs_begun_at_once_one_writes_and_the_others_say_so() {
         refused.wants(3, &["out/block is being written by another sinew"]);
     }
     assert_eq!(place.json("out/block/summary.json")["ended"], "finished");
-    assert_eq!(*place.frames("out/block").last().unwrap(), 2.0);
+    // steps that followed what is stable add up to that
+    let last = *place.frames("out/block").last().unwrap();
+    assert!((last - 2.0).abs() < 1e-12, "{last}");
 }
