@@ -77,8 +77,8 @@ fn where_tools_alone_give_back_more_nobody_is_sent_to_sweeps() {
     }
 }
 
-/// A free box that friction holds on a slope has next to no energy: what contact is inexact by was told of as 5.8e9 % of
-/// the largest so far.
+/// A free box that friction holds on a slope has next to no energy: what contact is inexact by was told of as 5.8e9 %
+/// of the largest so far.
 #[test]
 fn what_holds_a_free_box_that_rests_is_not_warned_of() {
     for run in cpu_and_long_gpu() {

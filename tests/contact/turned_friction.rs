@@ -48,8 +48,8 @@ fn places(simulation: &mut Simulation, body: &str) -> Vec<(DVec3, DVec3)> {
 }
 
 /// The elastic slip of a spring turns with its tool, and what pressed along another normal before rubs along none:
-/// corners crept by the depth times the angle (.3 mm about an axis in the plates, .055 mm about that across), and plates
-/// were pushed aside by 13 % of what they press with.
+/// corners crept by the depth times the angle (.3 mm about an axis in the plates, .055 mm about that across), and
+/// plates were pushed aside by 13 % of what they press with.
 #[test]
 fn plates_that_turn_take_along_what_friction_holds_in_implicit_steps() {
     let found = [DVec3::ZERO, 90.0 * DVec3::X, 90.0 * DVec3::Z].map(|degrees| {

@@ -138,8 +138,8 @@ fn the_needle_slides_on_the_surface_and_does_not_pierce_it() {
     let ratio = -mean.x / mean.z;
     println!("mean {mean} N, ripple {ripple}, ratio {ratio}");
     // friction of 0.1, and the wall in front of a needle that is nearly as deep as its radius: 4.62 mN and .159 here,
-    // half of the step has 4.62 mN and .162; between nodes it dips into faces, and a mesh of cells two thirds as large, into
-    // which it dips less, has 5.19 mN and .138
+    // half of the step has 4.62 mN and .162; between nodes it dips into faces, and a mesh of cells two thirds as large,
+    // into which it dips less, has 5.19 mN and .138
     assert!(near(mean.z, 4.62e-3, 0.02) && near(ratio, 0.16, 0.04), "{mean} {ratio}");
     // it rests on few nodes: .024 here, .031 with half of the step, .003 on the finer mesh
     assert!(ripple < 0.04, "{ripple}");

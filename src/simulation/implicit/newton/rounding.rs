@@ -15,8 +15,8 @@ impl Newton<'_, '_> {
     }
 
     /// About what rounding makes of the residual (N): of a displacement the last digit, and of where nodes are that may
-    /// touch, times the norm of its row of K, which a product with signs shows, and its inertia. The forces at w must be
-    /// known.
+    /// touch, times the norm of its row of K, which a product with signs shows, and its inertia. The forces at w must
+    /// be known.
     pub(super) fn rounding(&mut self) -> Result<f64, Error> {
         let Self { trial, settings, h, motion, space, .. } = self;
         let Workspace { correction, net, vectors: Vectors { direction, image }, .. } = &mut **space;
