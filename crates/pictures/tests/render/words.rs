@@ -236,7 +236,8 @@ fn a_fixed_range_says_which_value_has_which_colour() {
 #[test]
 fn the_bar_has_a_point_where_values_lie_beyond_it() {
     // one element of so many is less than one in two hundred of what is seen
-    let runs: [(&str, fn(DVec3) -> f32); 2] = [
+    type Value = fn(DVec3) -> f32;
+    let runs: [(&str, Value); 2] = [
         ("beyond", |at| if at.max_element() < 1.0 { 20.0 } else { 0.1 * at.x as f32 }),
         ("within", |at| 0.1 * at.x as f32),
     ];
