@@ -62,6 +62,8 @@ pub enum Increments {
     All,
     /// Those of the second half.
     SecondHalf,
+    /// The last three of so many numbers a row.
+    LastThreeOf(usize),
 }
 
 impl Increments {
@@ -71,6 +73,7 @@ impl Increments {
             Self::None => false,
             Self::All => true,
             Self::SecondHalf => place >= length / 2,
+            Self::LastThreeOf(numbers) => place % numbers >= numbers - 3,
         }
     }
 }

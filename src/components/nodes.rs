@@ -36,9 +36,9 @@ columns! {
     /// Bits 0, 1, 2: the node does not move freely along x, y, z.
     ConstrainedAxes(Vec<u32>) = "constrained_axes", Given of Constraint, Nodes(1);
     /// Work done on or by a node since the start (J): by loads, against damping, by constraints, by internal forces;
-    /// then the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. That is
-    /// as far as it went, however long steps are by now: forces work along the way. Exists when energies are asked for.
-    Work(Reals) = "work", State of Account, Nodes(WORK_NUMBERS);
+    /// then the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. Exists
+    /// when energies are asked for.
+    Work(Reals) = "work", State of Account, Nodes(WORK_NUMBERS), increments: LastThreeOf(WORK_NUMBERS);
     /// Acceleration at the end of the last step (m/s²), a vector a node. Exists where implicit steps are of second
     /// order.
     Acceleration(Reals) = "acceleration", State of Scheme, Nodes(3);
@@ -55,7 +55,7 @@ columns! {
     /// Displacement of the last step along prescribed axes (m), which `boundary` has written over in
     /// [`DisplacementIncrement`], in f32 whatever the run's precision: a vector a node. Exists with [`InternalWork`]
     /// where nodes are prescribed and steps are explicit.
-    PreviousPrescribedIncrement(Vec<f32>) = "previous_prescribed_increment", State of Account, Nodes(3), in "node_diagnostics";
+    PreviousPrescribedIncrement(Vec<f32>) = "previous_prescribed_increment", State of Account, Nodes(3), increments: All, in "node_diagnostics";
     /// Bits: which of those node systems that choose their nodes have chosen a node. Exists when there are some.
     ChosenBy(Vec<u32>) = "chosen_by", State of Own, Nodes(1);
     /// Numbers that node systems keep for themselves from step to step: those of a node side by side, of one system
