@@ -73,11 +73,13 @@ pub fn removal(trial: &mut Trial<'_>) -> Result<(), Error> {
         let mut simulation = trial.start(&sets)?;
         let element = (0.02 / f64::from(cells)).powi(3) / of_a_cell;
         let (mut over, mut under, mut odd) = (f64::NEG_INFINITY, f64::NEG_INFINITY, 0);
-        let mut volume = 0.0;
+        // looks are steps apart that may have been longer than the one that is taken now
+        let (mut volume, mut longest) = (0.0, simulation.time_step());
         for sample in 1..=10 {
             simulation.advance_to(0.02 * f64::from(sample))?;
+            longest = longest.max(simulation.time_step());
             volume = simulation.probe("hole")?[0];
-            let (taken, late) = (rate * simulation.time(), rate * 20.0 * simulation.time_step());
+            let (taken, late) = (rate * simulation.time(), rate * 20.0 * longest);
             over = over.max((volume - taken) / element);
             under = under.max((taken - late - volume) / element);
             odd += odd_edges(&mut simulation)?;
