@@ -5,13 +5,14 @@ use glam::{DQuat, DVec3};
 use sinew::assembly::motion;
 
 /// A rod whose tip goes sideways and down into a block, its shaft through a point 3 cm above it. `way` is how it moves.
+/// The step is told: where it follows what is stable, two of them would be looked at at different times.
 fn scene(way: &str) -> String {
     format!(
         "(duration: 0.2, bodies: {{\"b\": (mesh: Box(size: (0.03, 0.03, 0.02), cells: (9, 9, 6)), material: \"m\")}},
         materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 20)}},
         constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))],
         tools: {{\"rod\": (shape: Capsule(length: 0.06, radius: 0.006), {way})}},
-        contacts: [Tool(tool: \"rod\", friction: 0.1)])"
+        contacts: [Tool(tool: \"rod\", friction: 0.1)], integration: (step: 2e-4))"
     )
 }
 
