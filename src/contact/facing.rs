@@ -73,90 +73,28 @@ impl Surfaces {
     pub fn faced_at_a_glance(
         &self,
         (now, point, (short, listed)): (Placed<'_>, &Point, (&mut Shortlist, &[u32])),
-        (nearer, (of_reach, more), edge): (f64, (impl Fn(u32) -> f64, f64), impl Fn(u32) -> f64),
+        (nearer, (reach, more), edge): (f64, (impl Fn(u32) -> f64, f64), impl Fn(u32) -> f64),
         (lately, faced, own): (Lately, &mut Faced, &mut Own),
     ) -> bool {
         let Some((triangles, first)) = short.triangles_now(lately) else { return false };
         (faced.first, faced.second, faced.wakes) = (None, None, short.wakes);
-        let (mut only, mut beside, mut seen) = (None, 0_u16, [(0.0, 0); MOST]);
         if triangles.is_empty() {
             return true;
         }
-        let at = point.place(now.places);
-        for (number, &triangle) in triangles.iter().enumerate() {
-            let found = OnTriangle::nearest(at, self.corners(now.places, triangle));
-            let distance = at.distance(found.at);
-            seen[number] = (distance, found.part);
-            faced.wakes = faced.wakes.min(distance - nearer);
-            let within = [self.depths[triangle as usize], of_reach(triangle)];
-            if distance > within[0] && distance > within[1] {
-                continue;
-            }
-            if found.part != 0 && distance > ON_IT * edge(triangle) {
-                beside |= 1 << number;
-            } else if only.replace((number, found, within)).is_some() {
-                return false;
-            }
-        }
-        for (number, &triangle) in triangles.iter().enumerate().filter(|(number, _)| beside >> number & 1 == 1) {
-            let (farthest, part) = (NEARER * seen[number].0, seen[number].1);
-            let mut others = triangles.iter().zip(&seen).filter(|(_, (distance, _))| *distance < farthest);
-            // those that show it are not all in shortlists; beyond a rim there are none, and what is outside there is
-            // so as far as it is away
-            let is_told = others.any(|(&other, _)| self.shares_part(other, triangle, part))
-                || seen[number].0 > of_reach(triangle) && self.is_outside((now, at), (triangle, part))
-                || self.goes_on_nearer((now.places, at), (triangle, part), farthest);
-            if !is_told {
-                return false;
-            }
-        }
-        let Some((place, OnTriangle { at: nearest, weights, .. }, [depth, reach])) = only else { return true };
+        let glance = Glance { surfaces: self, now, point, at: point.place(now.places), reach, edge };
+        let mut seen = [(0.0, 0); MOST];
+        let (place, found) = match glance.only(triangles, &mut seen, (nearer, &mut faced.wakes)) {
+            Only::Nothing => return true,
+            Only::One(place, found) => (place, found),
+            Only::More => return false,
+        };
         let (triangle, number) = (triangles[place], first + place);
         if triangles.len() > 1 && short.may_be_alone(lately) {
-            let (gone, nearest) = (lately.farther, seen[place].0);
-            let stays_away = |(&other, &(distance, part)): (&u32, &(f64, usize))| {
-                let within = f64::max(self.depths[other as usize], of_reach(other) + more);
-                other == triangle
-                    || distance - gone > f64::max(within, nearest + gone)
-                    || distance - gone > ON_IT * edge(other)
-                        && nearest + gone < NEARER * (distance - gone)
-                        && self.shares_part(triangle, other, part)
-                        && OnTriangle::stays_nearest(at, self.corners(now.places, other), part, gone)
-            };
-            let is_alone = triangles.iter().zip(&seen).all(stays_away);
+            let is_alone = glance.stays_alone((triangles, &seen), place, (lately.farther, more));
             short.note_alone(is_alone.then_some(number), lately);
         }
-        let normal = self.normal_now(now, triangle);
-        let gap = (at - nearest).dot(normal);
-        if !(gap >= -depth && gap <= reach) || normal == DVec3::ZERO {
-            return true;
-        }
-        let mut facing = Facing { triangle, weights, at: nearest, normal, gap };
-        let mut of_point = None;
-        if short.may_have_rim(number) {
-            let mut ask = || *of_point.get_or_insert_with(|| own.of(self, now, point));
-            // of its own body it may be a face beside its own
-            let is_beside = self.bodies[facing.triangle as usize] == point.body && normal.dot(ask()) >= TURNED_AWAY;
-            let flank = match is_beside {
-                true => None,
-                false => self.flank(now, (point, ask), (listed, edge(facing.triangle)), facing),
-            };
-            let Some(flank) = flank else { return true };
-            facing = flank;
-        }
-        let is_turned_away = match (of_point, point.triangle) {
-            (Some(own), _) => facing.normal.dot(own) < TURNED_AWAY,
-            (None, Some(_)) => normal.dot(own.of(self, now, point)) < TURNED_AWAY,
-            // of one at a rim, with walls beside it, its own normal is asked
-            (None, None) => {
-                short.is_turned_away(number)
-                    || self.all_turned_away(now, point.nodes[0], normal)
-                    || normal.dot(own.of(self, now, point)) < TURNED_AWAY
-            }
-        };
-        if is_turned_away {
-            faced.first = Some(facing);
-        }
+        let rims = short.may_have_rim(number).then_some(listed);
+        faced.first = glance.in_front((triangle, found), (rims, short.is_turned_away(number)), own);
         true
     }
 
@@ -292,6 +230,124 @@ impl Surfaces {
     }
 }
 
+/// What is near a point of whose shortlist one triangle at most is to be looked at.
+enum Only {
+    Nothing,
+    /// Its place in the shortlist, and where it is nearest.
+    One(usize, OnTriangle),
+    More,
+}
+
+/// A look at the triangles of a point's shortlist, which is known.
+struct Glance<'a, R, E> {
+    surfaces: &'a Surfaces,
+    now: Placed<'a>,
+    point: &'a Point,
+    /// Where it is (m).
+    at: DVec3,
+    /// How far off triangles are looked at (m).
+    reach: R,
+    /// The length of an edge (m), of a triangle's body or the point's.
+    edge: E,
+}
+
+impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Glance<'_, R, E> {
+    /// The one triangle that matters: others are far off, beside another or behind a rim. Writes how far off each is
+    /// (m) and which part of it is nearest; for `wakes` see [`Faced`].
+    #[inline(always)]
+    fn only(&self, triangles: &[u32], seen: &mut [(f64, usize); MOST], (nearer, wakes): (f64, &mut f64)) -> Only {
+        let (mut only, mut beside) = (Only::Nothing, 0_u16);
+        for (place, &triangle) in triangles.iter().enumerate() {
+            let found = OnTriangle::nearest(self.at, self.surfaces.corners(self.now.places, triangle));
+            let distance = self.at.distance(found.at);
+            seen[place] = (distance, found.part);
+            *wakes = wakes.min(distance - nearer);
+            if distance > self.surfaces.depths[triangle as usize] && distance > (self.reach)(triangle) {
+                continue;
+            }
+            if found.part != 0 && distance > ON_IT * (self.edge)(triangle) {
+                beside |= 1 << place;
+            } else if let Only::Nothing = only {
+                only = Only::One(place, found);
+            } else {
+                return Only::More;
+            }
+        }
+        let mut beside = (0..triangles.len()).filter(|place| beside >> place & 1 == 1);
+        if beside.all(|place| self.is_told((triangles, seen), place)) { only } else { Only::More }
+    }
+
+    /// Whether a triangle whose rim is what is nearest matters to nobody: another that shares it is nearer.
+    #[inline(always)]
+    fn is_told(&self, (triangles, seen): (&[u32], &[(f64, usize)]), place: usize) -> bool {
+        let Self { surfaces, now, at, .. } = *self;
+        let (triangle, (distance, part)) = (triangles[place], seen[place]);
+        let farthest = NEARER * distance;
+        let mut others = triangles.iter().zip(seen).filter(|(_, (distance, _))| *distance < farthest);
+        // those that show it are not all in shortlists; beyond a rim there are none, and what is outside there is so as
+        // far as it is away
+        others.any(|(&other, _)| surfaces.shares_part(other, triangle, part))
+            || distance > (self.reach)(triangle) && surfaces.is_outside((now, at), (triangle, part))
+            || surfaces.goes_on_nearer((now.places, at), (triangle, part), farthest)
+    }
+
+    /// Whether all others stay where they need not be looked at, as long as no two nodes move against each other by
+    /// more than `gone` (m) and triangles are looked at that are farther by no more than `more` (m).
+    #[inline(always)]
+    fn stays_alone(
+        &self,
+        (triangles, seen): (&[u32], &[(f64, usize)]),
+        place: usize,
+        (gone, more): (f64, f64),
+    ) -> bool {
+        let Self { surfaces, now, at, .. } = *self;
+        let (triangle, nearest) = (triangles[place], seen[place].0);
+        triangles.iter().zip(seen).all(|(&other, &(distance, part))| {
+            let within = f64::max(surfaces.depths[other as usize], (self.reach)(other) + more);
+            other == triangle
+                || distance - gone > f64::max(within, nearest + gone)
+                || distance - gone > ON_IT * (self.edge)(other)
+                    && nearest + gone < NEARER * (distance - gone)
+                    && surfaces.shares_part(triangle, other, part)
+                    && OnTriangle::stays_nearest(at, surfaces.corners(now.places, other), part, gone)
+        })
+    }
+
+    /// What the point faces of a triangle that is looked at alone. `rims` are the triangles that may be near where it
+    /// may have a rim.
+    #[inline(always)]
+    fn in_front(
+        &self,
+        (triangle, OnTriangle { at: nearest, weights, .. }): (u32, OnTriangle),
+        (rims, is_turned_away): (Option<&[u32]>, bool),
+        own: &mut Own,
+    ) -> Option<Facing> {
+        let Self { surfaces, now, point, at, .. } = *self;
+        let normal = surfaces.normal_now(now, triangle);
+        let gap = (at - nearest).dot(normal);
+        if !(gap >= -surfaces.depths[triangle as usize] && gap <= (self.reach)(triangle)) || normal == DVec3::ZERO {
+            return None;
+        }
+        let mut facing = Facing { triangle, weights, at: nearest, normal, gap };
+        let mut of_point = None;
+        if let Some(listed) = rims {
+            let ask = || *of_point.insert(own.of(surfaces, now, point));
+            facing = surfaces.flank(now, (point, ask), (listed, (self.edge)(triangle)), facing)?;
+        }
+        let is_turned_away = match (of_point, point.triangle) {
+            (Some(own), _) => facing.normal.dot(own) < TURNED_AWAY,
+            (None, Some(_)) => normal.dot(own.of(surfaces, now, point)) < TURNED_AWAY,
+            // of one at a rim, with walls beside it, its own normal is asked
+            (None, None) => {
+                is_turned_away
+                    || surfaces.all_turned_away(now, point.nodes[0], normal)
+                    || normal.dot(own.of(surfaces, now, point)) < TURNED_AWAY
+            }
+        };
+        is_turned_away.then_some(facing)
+    }
+}
+
 /// How little a face is in a point's way, whose normal's cosine with the point's own is `turned`. Outside the nearest
 /// is most in its way, or with a thickness it would come nearer to that one for the sake of another. Inside, and at an
 /// edge, where the walls beside a face are as near as itself, it is the one that it faces more.
@@ -335,7 +391,8 @@ impl<E: Fn(u32) -> f64> Way<'_, E> {
             Some(triangle) => surfaces.normal_now(now, triangle),
             None => surfaces.normal_of_node(now, point.nodes[0]),
         });
-        let Some(facing) = self.beside_rims(facing, own) else { return };
+        let listed = (self.triangles, edge(facing.triangle));
+        let Some(facing) = surfaces.flank(now, (point, || own), listed, facing) else { return };
         let turned = facing.normal.dot(own);
         if turned >= TURNED_AWAY {
             return;
@@ -364,16 +421,6 @@ impl<E: Fn(u32) -> f64> Way<'_, E> {
         {
             self.faced[1] = None;
         }
-    }
-
-    /// What is in its way of a face that may be at a rim.
-    fn beside_rims(&self, facing: Facing, own: DVec3) -> Option<Facing> {
-        let Self { surfaces, now, point, edge, .. } = *self;
-        // of its own body it may be a face beside its own
-        if surfaces.bodies[facing.triangle as usize] == point.body && facing.normal.dot(own) >= TURNED_AWAY {
-            return Some(facing);
-        }
-        surfaces.flank(now, (point, || own), (self.triangles, edge(facing.triangle)), facing)
     }
 
     /// What is in its way: where only one was seen, that it is turned away is all that is asked.

@@ -41,6 +41,10 @@ impl Surfaces {
             return Some(facing);
         }
         let (at, own) = (point.place(now.places), own());
+        // of its own body it may be a face beside its own
+        if self.bodies[facing.triangle as usize] == point.body && facing.normal.dot(own) >= TURNED_AWAY {
+            return None;
+        }
         // of its own triangles
         let normals: SmallVec<[DVec3; 8]> = match point.triangle {
             Some(_) => smallvec![own],

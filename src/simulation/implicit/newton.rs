@@ -186,6 +186,8 @@ impl Newton<'_, '_> {
                 floor = self.rounding()?;
             }
             let enough = enough.max(floor);
+            // a step that begins within the tolerance, as at rest, leaves all of next to nothing
+            let begun = if first > enough { first } else { first.max(scale) };
             let moves = self.space.to_go.moves();
             // the linearised step takes its one solve wherever it begins
             let taken = self.settings.newton > 1 || iterations > 0 || size == 0.0;
@@ -201,7 +203,7 @@ impl Newton<'_, '_> {
                 )));
             }
             if solved || ends {
-                return Ok(self.left_of([first, size], solved, remaining));
+                return Ok(self.left_of((size, begun), solved, remaining));
             }
             if iterations >= self.settings.newton.max(MOST_MOVES) {
                 return Err(Lost::Because(format!(
@@ -219,7 +221,7 @@ impl Newton<'_, '_> {
             before = size;
             tried = match self.search(way, &mut size, enough) {
                 Err(Lost::Because(_)) if !moves && self.is_rounding(size)? => {
-                    return Ok(self.left_of([first, size], true, remaining));
+                    return Ok(self.left_of((size, begun), true, remaining));
                 }
                 found => found?,
             };
@@ -268,10 +270,9 @@ impl Newton<'_, '_> {
         tried.loads.sqrt() + tried.reactions.sqrt() + self.place().inertial_forces(&before)
     }
 
-    /// Notes how a step ends, and gives what is left of its residual.
-    fn left_of(&mut self, [first, size]: [f64; 2], solved: bool, remaining: f64) -> Found {
-        // a step that begins within the tolerance leaves all of next to nothing
-        let left = if first > 0.0 && !solved { size / first } else { 0.0 };
+    /// Notes how a step ends, and gives what is left of the residual that it began with (N).
+    fn left_of(&mut self, (size, begun): (f64, f64), solved: bool, remaining: f64) -> Found {
+        let left = if begun > 0.0 && !solved { size / begun } else { 0.0 };
         self.report.unsolved += u64::from(!solved && self.settings.newton > 1);
         self.report.largest_residual_left = self.report.largest_residual_left.max(left);
         Found { left, solved, remaining: if size > 0.0 { remaining } else { 0.0 } }

@@ -45,8 +45,8 @@ impl Table {
         while self.points.get(after).is_some_and(|(s, _)| *s < size) {
             after += 1;
         }
-        match (after.checked_sub(1).map(|i| self.points[i]), self.points.get(after)) {
-            (Some((s0, g0)), Some(&(s1, g1))) => g0 + (g1 - g0) * (size - s0) / (s1 - s0),
+        match beside(&self.points, after) {
+            (Some(before), Some(after)) => on_line(before, after, size),
             (None, _) => 1.0,
             (Some((s, g)), None) => (g * (size / s) * (size / s)).min(LARGEST_RATIO),
         }
@@ -55,8 +55,8 @@ impl Table {
     /// Up to which deformation the ratio is at most that: 0 where it is more from the beginning.
     pub(super) fn until(&self, ratio: f64) -> f64 {
         let after = self.points.partition_point(|(_, g)| *g <= ratio);
-        match (after.checked_sub(1).map(|i| self.points[i]), self.points.get(after)) {
-            (Some((s0, g0)), Some(&(s1, g1))) => {
+        match beside(&self.points, after) {
+            (Some((s0, g0)), Some((s1, g1))) => {
                 // a billionth less, so that rounding leads to no more; pieces may be as short as that
                 let size = s0 + (s1 - s0) * (ratio - g0) / (g1 - g0) * (1.0 - 1e-9);
                 if self.at(size) <= ratio { size } else { s0 }
@@ -87,11 +87,21 @@ fn never_falling(points: &mut Vec<(f64, f64)>) {
 /// The ratio of a kind at a deformation; beyond its last sample that of this.
 fn between(kind: &[(f64, f64)], size: f64) -> f64 {
     let after = kind.partition_point(|(s, _)| *s < size);
-    match (after.checked_sub(1).map(|i| kind[i]), kind.get(after)) {
-        (Some((s0, g0)), Some(&(s1, g1))) => g0 + (g1 - g0) * (size - s0) / (s1 - s0),
-        (Some((_, g)), None) | (None, Some(&(_, g))) => g,
+    match beside(kind, after) {
+        (Some(before), Some(after)) => on_line(before, after, size),
+        (Some((_, g)), None) | (None, Some((_, g))) => g,
         (None, None) => 1.0,
     }
+}
+
+/// The points before and after a place among them.
+fn beside(points: &[(f64, f64)], after: usize) -> (Option<(f64, f64)>, Option<(f64, f64)>) {
+    (after.checked_sub(1).map(|before| points[before]), points.get(after).copied())
+}
+
+/// The ratio of a deformation between two points.
+fn on_line((s0, g0): (f64, f64), (s1, g1): (f64, f64), size: f64) -> f64 {
+    g0 + (g1 - g0) * (size - s0) / (s1 - s0)
 }
 
 /// Which sixty-fourth of an octave from 1 on a size is in: the exponent and six bits of the mantissa.

@@ -73,6 +73,23 @@ fn tools_and_hands_are_where_they_are() {
     assert!((held[0].x - 0.05).abs() < 2e-3 && f64::from(held[0].z) <= top + 1e-6, "{held:?}");
 }
 
+/// The bar with a skin of a Wavefront text, once it has run so far (s).
+fn bar_with_skin(folder: &std::path::Path, skin: &str, time: f64) -> (App, Entity) {
+    let scene = BAR.replace("material: \"gel\"", "material: \"gel\", skin: (file: \"skin.obj\")");
+    std::fs::write(folder.join("skin.obj"), skin).unwrap();
+    std::fs::write(folder.join("bar.ron"), scene).unwrap();
+    let mut app = app_in(folder);
+    let handle = app.world().resource::<bevy_asset::AssetServer>().load("bar.ron");
+    let scene = spawn_asset(&mut app, handle);
+    for _ in 0..2000 {
+        app.update();
+        if app.world().get::<SoftSimulation>(scene).is_some_and(|running| running.time() > time) {
+            break;
+        }
+    }
+    (app, scene)
+}
+
 /// Two triangles through the bar, with a picture on them.
 const SKIN: &str = "v 0 0 0.015\nv 0.06 0 0.015\nv 0.06 0.02 0.015\nv 0 0.02 0.015\n\
     vt 0 0\nvt 1 0\nvt 1 0.75\nvt 0 0.75\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
@@ -80,18 +97,7 @@ const SKIN: &str = "v 0 0 0.015\nv 0.06 0 0.015\nv 0.06 0.02 0.015\nv 0 0.02 0.0
 #[test]
 fn a_body_with_a_skin_is_drawn_as_that_with_its_texture_coordinates() {
     let folder = tempfile::tempdir().unwrap();
-    let scene = BAR.replace("material: \"gel\"", "material: \"gel\", skin: (file: \"skin.obj\")");
-    std::fs::write(folder.path().join("skin.obj"), SKIN).unwrap();
-    std::fs::write(folder.path().join("bar.ron"), scene).unwrap();
-    let mut app = app_in(folder.path());
-    let handle = app.world().resource::<bevy_asset::AssetServer>().load("bar.ron");
-    let scene = spawn_asset(&mut app, handle);
-    for _ in 0..2000 {
-        app.update();
-        if app.world().get::<SoftSimulation>(scene).is_some_and(|running| running.time() > 0.1) {
-            break;
-        }
-    }
+    let (mut app, scene) = bar_with_skin(folder.path(), SKIN, 0.1);
     let bar = body(&app, scene, "bar");
     assert_eq!(triangles(&app, bar), [0, 1, 2, 0, 2, 3]);
     match mesh(&app, bar).attribute(Mesh::ATTRIBUTE_UV_0) {
@@ -119,18 +125,7 @@ const ROOF: &str = "v 0 0 0.015\nv 0.06 0 0.015\nv 0 0.01 0.02\nv 0.06 0.01 0.02
 #[test]
 fn a_skin_has_one_normal_at_a_place_whatever_its_texture_coordinates() {
     let folder = tempfile::tempdir().unwrap();
-    let scene = BAR.replace("material: \"gel\"", "material: \"gel\", skin: (file: \"roof.obj\")");
-    std::fs::write(folder.path().join("roof.obj"), ROOF).unwrap();
-    std::fs::write(folder.path().join("bar.ron"), scene).unwrap();
-    let mut app = app_in(folder.path());
-    let handle = app.world().resource::<bevy_asset::AssetServer>().load("bar.ron");
-    let scene = spawn_asset(&mut app, handle);
-    for _ in 0..2000 {
-        app.update();
-        if app.world().get::<SoftSimulation>(scene).is_some_and(|running| running.time() > 0.01) {
-            break;
-        }
-    }
+    let (app, scene) = bar_with_skin(folder.path(), ROOF, 0.01);
     let bar = body(&app, scene, "bar");
     let (places, normals) = (places(&app, bar), vectors(mesh(&app, bar), Mesh::ATTRIBUTE_NORMAL));
     let mut shared = 0;
