@@ -34,8 +34,8 @@ fn may_meet(point: u32, triangle: u32) -> bool {
     return true;
 }
 
-// What a point faces that sees a face near its rim; twin of src/contact/rims.rs.
-fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing) -> Facing {
+// What a point faces that sees a face near its rim, where faces are looked at so far (m); twin of src/contact/rims.rs.
+fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing, reach: f32) -> Facing {
     let corners = corners_of(facing.triangle, point);
     let edge = edge_with(facing.triangle);
     let near = ALIKE * edge;
@@ -73,7 +73,7 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing) -> Faci
                 of_other[0] - facing.at, of_other[1] - facing.at, of_other[2] - facing.at);
             let distance = length(nearest(of_other).at);
             let depth = bitcast<f32>(surface_faces[8u * other + 7u]);
-            if length(nearest(from_place).at) >= near || distance > depth || !may_meet(number, other) {
+            if length(nearest(from_place).at) >= near || distance > max(depth, reach) || !may_meet(number, other) {
                 continue;
             }
             let turned = dot(own, other_normal);
@@ -109,6 +109,7 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing) -> Faci
     faced.triangle = flank;
     faced.normal = normal_of(of_flank);
     faced.gap = -dot(of_flank[0], faced.normal);
+    faced.part = 0u;
     if faced.gap <= -min(near, bitcast<f32>(surface_faces[8u * flank + 7u])) {
         return facing;
     }
@@ -123,13 +124,96 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing) -> Faci
     if beyond >= on_it && flank == facing.triangle && faced.gap > beyond {
         return facing;
     }
-    let across = cross(of_flank[1] - of_flank[0], of_flank[2] - of_flank[0]);
-    let of_b = dot(cross(off[2], off[0]), across) / dot(across, across);
-    let of_c = dot(cross(off[0], off[1]), across) / dot(across, across);
-    faced.weights = vec3<f32>(1.0 - of_b - of_c, of_b, of_c);
+    faced.weights = weights_in_plane(off);
     // what is behind the wall is before some face of the flank
     faced.there = beyond < on_it && (flank == facing.triangle || outside > -on_it);
     return faced;
+}
+
+// What each corner of a triangle has of a place in its plane that they are counted from.
+fn weights_in_plane(off: array<vec3<f32>, 3>) -> vec3<f32> {
+    let across = cross(off[1] - off[0], off[2] - off[0]);
+    let of_b = dot(cross(off[2], off[0]), across) / dot(across, across);
+    let of_c = dot(cross(off[0], off[1]), across) / dot(across, across);
+    return vec3<f32>(1.0 - of_b - of_c, of_b, of_c);
+}
+
+// How many triangles are around the side or corner that a point is before, and each of them, ascending.
+fn count_around(facing: Facing) -> u32 {
+    if facing.part < 4u {
+        return 2u;
+    }
+    let starts = surface.around + surface_faces[8u * facing.triangle + facing.part - 4u];
+    return surface_faces[starts + 1u] - surface_faces[starts];
+}
+
+fn around_part(facing: Facing, number: u32) -> u32 {
+    if facing.part < 4u {
+        // where there is none beside, it is the last
+        let other = surface_faces[8u * facing.triangle + 2u + facing.part];
+        return select(max(facing.triangle, other), min(facing.triangle, other), number == 0u);
+    }
+    let starts = surface.around + surface_faces[8u * facing.triangle + facing.part - 4u];
+    return surface_faces[surface.around + surface.nodes + 1u + surface_faces[starts] + number];
+}
+
+// Whether all that is around a side or a corner is behind a plane through it, but for a twentieth.
+fn are_behind(facing: Facing, point: vec3<f32>, normal: vec3<f32>) -> bool {
+    let count = count_around(facing);
+    for (var number = 0u; number < count; number++) {
+        let other = around_part(facing, number);
+        if other == NONE {
+            continue;
+        }
+        var corners = corners_of(other, point);
+        for (var corner = 0u; corner < 3u; corner++) {
+            let off = corners[corner] - facing.at;
+            if dot(off, normal) > ALIKE * length(off) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+// What a point faces that is before a side or a corner, by where its step against that ends: the plane through it that
+// it ends the farthest outside of; twin of systems/surface_contact/ends.rs and src/contact/rims.rs.
+fn at_end(point_number: u32, point: vec3<f32>, facing: Facing) -> Facing {
+    let meets = meeting_with(facing.triangle);
+    // a spring does not ask where a step ends
+    if facing.part == 0u || meeting_number(meets, 4u) > 0.0 {
+        return facing;
+    }
+    let goes_by = goes(parts_of(point_number, facing, point), NEXT);
+    var farthest = dot(facing.normal, goes_by - facing.at);
+    if farthest >= meeting_number(meets, 3u) + SHARES * meeting_number(meets, EDGE) {
+        return facing;
+    }
+    var found = facing;
+    let count = count_around(facing);
+    for (var number = 0u; number < count; number++) {
+        let triangle = around_part(facing, number);
+        if triangle == NONE || !may_meet(point_number, triangle) {
+            continue;
+        }
+        let corners = corners_of(triangle, point);
+        let normal = normal_of(corners);
+        let gap = -dot(corners[0], normal);
+        let ends = gap + dot(normal, goes_by);
+        if all(normal == vec3<f32>(0.0)) || !(gap >= 0.0 && ends > farthest + surface.rounding)
+            || !are_behind(facing, point, normal) {
+            continue;
+        }
+        farthest = ends;
+        found.triangle = triangle;
+        found.normal = normal;
+        found.gap = gap;
+        found.part = 0u;
+        found.at = -gap * normal;
+        found.weights = weights_in_plane(array<vec3<f32>, 3>(
+            corners[0] - found.at, corners[1] - found.at, corners[2] - found.at));
+    }
+    return found;
 }
 
 // Whether two faces are walls of a corner that the point is in, and the first is not behind the second.
@@ -193,7 +277,7 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
         }
         // of its own body it may be a face beside its own
         if surface_faces[8u * triangle + 6u] != surface.body || dot(facing.normal, own) < TURNED_AWAY {
-            facing = at_rim(number, point, own, facing);
+            facing = at_rim(number, point, own, facing, reach);
         }
         facing.turned = dot(facing.normal, own);
         if !facing.there || facing.turned >= TURNED_AWAY {
@@ -209,27 +293,56 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
         }
         both.second.there = both.second.there && is_corner(both.first, both.second, point);
     }
+    if both.first.there {
+        both.first = at_end(number, point, both.first);
+    }
+    if both.second.there {
+        both.second = at_end(number, point, both.second);
+    }
     return both;
 }
 
-// How far the end of a normal as long as a thickness (m) has gone in the last step as a triangle turned (m).
-fn turned_by(thickness: f32, triangle: u32) -> vec3<f32> {
-    if thickness <= 0.0 {
+// How far the end of a normal as long as the thickness has gone in the last step as the surface turned where a point
+// faces it (m), around each node that bears the point.
+fn turned_by(meets: u32, parts: Parts, normal: vec3<f32>) -> vec3<f32> {
+    let thickness = meeting_number(meets, 3u);
+    // what nothing holds does not go along
+    if thickness <= 0.0 || max(meeting_number(meets, 1u), meeting_number(meets, 2u)) <= 0.0 {
         return vec3<f32>(0.0);
     }
-    let at = 8u * triangle;
-    let corners = corners_of(triangle, place_of(surface_faces[at]));
-    let by_a = last_step_of(surface_faces[at]);
-    let by_b = last_step_of(surface_faces[at + 1u]) - by_a;
-    let by_c = last_step_of(surface_faces[at + 2u]) - by_a;
-    // sides in the middle of the step, and how they changed in it
-    let b = corners[1] - corners[0] - 0.5 * by_b;
-    let c = corners[2] - corners[0] - 0.5 * by_c;
-    let across = cross(b, c);
-    let change = cross(by_b, c) + cross(b, by_c);
-    let size = max(length(across), 1e-37);
-    let normal = across / size;
-    return (change - normal * dot(normal, change)) * (thickness / size);
+    var turn = vec3<f32>(0.0);
+    for (var part = OF_FACE; part < PARTS; part++) {
+        if parts.weights[part] != 0.0 {
+            turn -= parts.weights[part] * turn_around(parts.nodes[part], normal);
+        }
+    }
+    return thickness * cross(turn, normal);
+}
+
+// How the surface around a node has turned in the last step (rad), but for turns about its own normal: triangles count
+// by their areas, and the more the more they look along a normal.
+fn turn_around(node: u32, normal: vec3<f32>) -> vec3<f32> {
+    let at = place_of(node);
+    let starts = surface.around + node;
+    let all_around = surface.around + surface.nodes + 1u;
+    var across = vec3<f32>(0.0);
+    var change = vec3<f32>(0.0);
+    for (var place = surface_faces[starts]; place < surface_faces[starts + 1u]; place++) {
+        let triangle = surface_faces[all_around + place];
+        let corners = corners_of(triangle, at);
+        let by_a = last_step_of(surface_faces[8u * triangle]);
+        let by_b = last_step_of(surface_faces[8u * triangle + 1u]) - by_a;
+        let by_c = last_step_of(surface_faces[8u * triangle + 2u]) - by_a;
+        // sides in the middle of the step, and how they changed in it
+        let b = corners[1] - corners[0] - 0.5 * by_b;
+        let c = corners[2] - corners[0] - 0.5 * by_c;
+        let of_triangle = cross(b, c);
+        let share = max(dot(normal, of_triangle), 0.0) / max(length(of_triangle), 1e-37);
+        across += share * of_triangle;
+        change += share * (cross(by_b, c) + cross(b, by_c));
+    }
+    let size = length(across);
+    return select(vec3<f32>(0.0), cross(across / max(size, 1e-37), change / max(size, 1e-37)), size > 1e-30);
 }
 
 fn last_step_of(node: u32) -> vec3<f32> {
@@ -243,6 +356,18 @@ fn friction_of(meets: u32, parts: Parts, turned: vec3<f32>, normal: vec3<f32>, s
     let still = length(before - normal * dot(normal, before)) <= STILL * meeting_number(meets, EDGE);
     let is_held = state == STICKS || (state != SLIDES && still);
     return meeting_number(meets, select(2u, 1u, is_held));
+}
+
+// Notes the contact of a point if it meets something, of which only then it is known what holds it.
+fn begin_if_met(contact: u32, meets: u32, parts: Parts, of_point: Begun, state: f32) {
+    if !meets_it(meets, parts, of_point) {
+        return;
+    }
+    let turned = turned_by(meets, parts, of_point.normal);
+    var begun = of_point;
+    begun.friction = friction_of(meets, parts, turned, begun.normal, state);
+    begun.slip -= turned;
+    begin(contact, meets, parts, begun);
 }
 
 @compute @workgroup_size(64)
@@ -278,12 +403,8 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
         }
         allowed = max(min(before + min(outside_by - expected, 0.0) + settling, 0.0), min(outside_by, 0.0));
         let gap = max(outside_by - allowed, -OUT * edge);
-        let turned = turned_by(meeting_number(meets, 3u), both.first.triangle);
-        let friction = friction_of(meets, parts, turned, both.first.normal, state);
-        let begun = Begun(both.first.normal, gap, outside_by, allowed, SHARES * edge, friction, slip - turned);
-        if meets_it(meets, parts, begun) {
-            begin(2u * point, meets, parts, begun);
-        }
+        let begun = Begun(both.first.normal, gap, outside_by, allowed, SHARES * edge, 0.0, slip);
+        begin_if_met(2u * point, meets, parts, begun, state);
     }
     if both.second.there {
         // of another face nothing is known of how the point got there
@@ -292,12 +413,8 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
         let within = SHARES * meeting_number(meets, EDGE);
         let parts = parts_of(point, both.second, place);
         let second = gap_of(both.second, parts, place) - meeting_number(meets, 3u);
-        let turned = turned_by(meeting_number(meets, 3u), both.second.triangle);
-        let friction = friction_of(meets, parts, turned, both.second.normal, state);
-        let begun = Begun(both.second.normal, max(second, -settling), second, 0.0, within, friction, -turned);
-        if meets_it(meets, parts, begun) {
-            begin(2u * point + 1u, meets, parts, begun);
-        }
+        let begun = Begun(both.second.normal, max(second, -settling), second, 0.0, within, 0.0, vec3<f32>(0.0));
+        begin_if_met(2u * point + 1u, meets, parts, begun, state);
     }
     for (var k = 0u; k < 3u; k++) {
         surface_touch[at + k] = 0.0;

@@ -1,7 +1,9 @@
-// Adds the forces of contacts between surfaces to the loads of a body, a thread a node, in a fixed order.
+// Adds the forces of contacts between surfaces to the loads of a body, and counts what they take of its energy, a
+// thread a node, in a fixed order. MET is generated.
 @group(0) @binding(0) var<storage, read> surface_rows: array<u32>;
 @group(0) @binding(0) var<storage, read_write> external_force: array<f32>;
 @group(0) @binding(0) var<storage, read_write> contact_force: array<f32>;
+@group(0) @binding(0) var<storage, read_write> surface_touch: array<f32>;
 
 // Of the sum over contacts of a node: the force on it (N).
 fn collect(contact: u32, weight: f32) -> vec3<f32> {
@@ -20,11 +22,16 @@ fn surface_contact_push(@builtin(global_invocation_id) id: vec3<u32>, @builtin(n
     }
     let node = surface.first + i;
     let force = collect_all(node);
-    let at = 3u * surface_rows[4u * node];
+    let of_body = surface_rows[4u * node];
+    let at = 3u * of_body;
     contact_force[at] = force.x;
     contact_force[at + 1u] = force.y;
     contact_force[at + 2u] = force.z;
     external_force[at] += force.x;
     external_force[at + 1u] += force.y;
     external_force[at + 2u] += force.z;
+    if surface.relaxed == 0u && any(force != vec3<f32>(0.0)) {
+        let mean = 0.5 * (at_node(node, LAST) + at_node(node, NEXT));
+        surface_touch[MET * of_body + 7u] -= step.work_factor * dot(force, mean);
+    }
 }

@@ -1,5 +1,5 @@
-// Notes what contacts between surfaces came to, a thread a point: slip, length slid and what is lost. touch_of is
-// generated; note_edges is in surface_touch_edges.wgsl, or generated.
+// Notes what contacts between surfaces came to, a thread a point: slip and length slid. touch_of is generated;
+// note_edges is in surface_touch_edges.wgsl, or generated.
 @group(0) @binding(0) var<storage, read_write> surface_touch: array<f32>;
 
 // Of the first face of a point slip is kept.
@@ -21,12 +21,8 @@ fn note(contact: u32, at: u32, is_first: bool) {
         surface_touch[at + 2u] = slip.z;
         surface_touch[at + 4u] = select(STICKS, SLIDES, slides);
     }
-    if surface.relaxed == 0u {
-        let force = pressing * normal + vector(contact, RUBBING);
-        if slides {
-            surface_touch[at + 6u] += length(along_surface(after, normal));
-        }
-        surface_touch[at + 7u] -= step.work_factor * dot(force, 0.5 * (relative(contact, LAST) + after));
+    if surface.relaxed == 0u && slides {
+        surface_touch[at + 6u] += length(along_surface(after, normal));
     }
 }
 

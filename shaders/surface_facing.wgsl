@@ -19,6 +19,7 @@ struct Facing {
     at: vec3<f32>,
     normal: vec3<f32>,
     gap: f32,
+    part: u32, // the side or corner that the point is before and the normal is the way from, or 0
     turned: f32, // the cosine between its normal and the point's own
     there: bool,
 }
@@ -135,6 +136,7 @@ fn outside(triangle: u32, point: vec3<f32>, corners: array<vec3<f32>, 3>, found:
     facing.at = found.at;
     facing.normal = normal;
     facing.gap = -dot(found.at, normal);
+    facing.part = 0u;
     facing.there = true;
     if found.part == 0u || distance <= on_it {
         return facing;
@@ -164,5 +166,6 @@ fn outside(triangle: u32, point: vec3<f32>, corners: array<vec3<f32>, 3>, found:
     let outwards = dot(-found.at, around) >= 0.0;
     facing.normal = select(found.at, -found.at, outwards) / distance;
     facing.gap = select(-distance, distance, outwards);
+    facing.part = select(0u, found.part, outwards);
     return facing;
 }

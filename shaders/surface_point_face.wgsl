@@ -3,6 +3,7 @@
 const MEETS: u32 = FACES_MEET;
 const SHARES: f32 = 1e-3; // nearer than this to touching points share the masses of their nodes, in smaller edges
 const STEPS: u32 = 4u; // of Newton's from the middle of a quadrilateral
+const OF_FACE: u32 = 4u; // its first part that is of what it faces
 
 fn face_point(point: u32) -> u32 {
     return surface.face_points + FACE_POINT_WORDS * (point - surface.nodes);

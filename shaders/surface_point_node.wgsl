@@ -1,6 +1,7 @@
 // A node as a point that may meet others, in surface_contact.wgsl; a point of a face is in surface_point_face.wgsl.
 const MEETS: u32 = NODES_MEET;
 const SHARES: f32 = 0.0;
+const OF_FACE: u32 = 1u; // its first part that is of what it faces
 
 fn place_of_point(point: u32) -> vec3<f32> {
     return place_of(point);

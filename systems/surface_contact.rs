@@ -3,6 +3,7 @@
 mod body_slices;
 mod crossings;
 mod device;
+mod ends;
 mod faced;
 mod gather;
 mod hold;

@@ -12,12 +12,12 @@ columns! {
     /// What each node carries on as a point of a surface, [`MEETING_NUMBERS`] a node: how far it has slipped
     /// elastically (m, a vector); how deep it may be inside (m, 0 or negative); 0 where it faced nothing in the last
     /// step, 1 where it faced something, 2 where it stuck to it, 3 where it slid; how far it was outside of that before
-    /// the step, after it in implicit steps (m); since the start the length it has slid (m), and what impact and
-    /// friction have taken (J). Exists with [`ContactForce`].
+    /// the step, after it in implicit steps (m); since the start the length it has slid (m), and what contact has taken
+    /// of the node's energy (J), also where it is the faces around it that are touched. Exists with [`ContactForce`].
     SurfaceTouch(Reals) = "surface_touch", State of Touch, Nodes(MEETING_NUMBERS);
-    /// The same of each point of faces: those of a facet after another, as the body's surface has them, or where
-    /// [`FacePlaces`] says, and as [`face_points`](crate::contact::face_points) orders them. Exists where points of the
-    /// body's faces meet others.
+    /// The same of each point of faces, but that energy is counted at nodes alone: those of a facet after another, as
+    /// the body's surface has them, or where [`FacePlaces`] says, and as [`face_points`](crate::contact::face_points)
+    /// orders them. Exists where points of the body's faces meet others.
     FaceTouch(Reals) = "face_touch", State of Touch, Other;
 }
 

@@ -128,20 +128,22 @@ impl<'a, 'k> Candidates<'a, 'k> {
             return None;
         }
         let off = self.at - found.at;
-        let facing =
-            |normal: DVec3, gap: f64| Some(Facing { triangle, weights: found.weights, at: found.at, normal, gap });
+        let OnTriangle { at, weights, part } = found;
+        let facing = |part: usize, normal: DVec3, gap: f64| {
+            Some(Facing { triangle, weights, at, normal, gap, part: part as u32 })
+        };
         // in front or behind of it, or on it, and not beside
-        if found.part == 0 || distance <= ON_IT * edge {
-            return facing(normal, off.dot(normal));
+        if part == 0 || distance <= ON_IT * edge {
+            return facing(0, normal, off.dot(normal));
         }
         // the surface around a place that is nearest is nowhere nearer: not the flat surroundings of a point's own, nor
         // a side that leads round a corner
-        if self.goes_on_nearer(triangle, found.part, (0.0, NEARER * distance)) {
+        if self.goes_on_nearer(triangle, part, (0.0, NEARER * distance)) {
             return None;
         }
-        match off.dot(self.surfaces.normal_of_part(self.now, triangle, found.part)) {
-            out if out >= 0.0 => facing(off / distance, distance),
-            _ => facing(-off / distance, -distance),
+        match off.dot(self.surfaces.normal_of_part(self.now, triangle, part)) {
+            out if out >= 0.0 => facing(part, off / distance, distance),
+            _ => facing(0, -off / distance, -distance),
         }
     }
 

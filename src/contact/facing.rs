@@ -30,6 +30,9 @@ pub struct Facing {
     pub normal: DVec3,
     /// How far the point is outside (m); negative inside.
     pub gap: f64,
+    /// The side or corner, as [`OnTriangle::part`] counts them, that the point is before and the normal is the way
+    /// from; 0 where the normal is the face's own.
+    pub part: u32,
 }
 
 /// The normal of the triangle that the last point of a face was on, as is the next as a rule.
@@ -61,6 +64,12 @@ pub struct Faced {
 impl Faced {
     /// Nothing, which nothing changes.
     pub const NOTHING: Self = Self { first: None, second: None, wakes: f64::INFINITY };
+
+    /// Whether any normal is the way from a side or a corner.
+    #[inline(always)] // with the instructions of whoever asks
+    pub fn is_beside(&self) -> bool {
+        [&self.first, &self.second].into_iter().flatten().any(|facing| facing.part != 0)
+    }
 }
 
 impl Surfaces {
@@ -125,8 +134,9 @@ impl Surfaces {
     ) {
         let Kept { nearest, around } = kept;
         let mut candidates = Candidates::new((self, now), point.place(now.places), listed, nearest);
-        let (triangles, waiting, edge) = (listed.triangles, None, &edge);
-        let mut way = Way { surfaces: self, now, point, triangles, edge, own: None, waiting, faced: [None; 2] };
+        let (triangles, reach, edge) = (listed.triangles, &reach, &edge);
+        let (own, waiting) = (None, None);
+        let mut way = Way { surfaces: self, now, point, triangles, reach, edge, own, waiting, faced: [None; 2] };
         let mut wakes = f64::INFINITY;
         let mut look = |candidates: &Candidates<'_, '_>, number: usize, triangle: u32| {
             let &(found, distance) = candidates.nearest(number);
@@ -328,11 +338,12 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Glance<'_, R, E> {
         if !(gap >= -surfaces.depths[triangle as usize] && gap <= (self.reach)(triangle)) || normal == DVec3::ZERO {
             return None;
         }
-        let mut facing = Facing { triangle, weights, at: nearest, normal, gap };
+        let mut facing = Facing { triangle, weights, at: nearest, normal, gap, part: 0 };
         let mut of_point = None;
         if let Some(listed) = rims {
             let ask = || *of_point.insert(own.of(surfaces, now, point));
-            facing = surfaces.flank(now, (point, ask), (listed, (self.edge)(triangle)), facing)?;
+            let within = ((self.reach)(triangle), (self.edge)(triangle));
+            facing = surfaces.flank(now, (point, ask), (listed, within), facing)?;
         }
         let is_turned_away = match (of_point, point.triangle) {
             (Some(own), _) => facing.normal.dot(own) < TURNED_AWAY,
@@ -356,12 +367,14 @@ fn in_way(facing: &Facing, turned: f64, edge: f64) -> f64 {
 }
 
 /// The faces that are in a point's way, of those seen so far.
-struct Way<'a, E> {
+struct Way<'a, R, E> {
     surfaces: &'a Surfaces,
     now: Placed<'a>,
     point: &'a Point,
     /// The triangles that may be near it.
     triangles: &'a [u32],
+    /// How far off triangles are looked at (m).
+    reach: &'a R,
     /// The length of an edge (m), of a triangle's body or the point's.
     edge: &'a E,
     /// The point's own normal, once somebody has asked for it.
@@ -373,7 +386,7 @@ struct Way<'a, E> {
     faced: [Option<(Facing, f64)>; 2],
 }
 
-impl<E: Fn(u32) -> f64> Way<'_, E> {
+impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
     fn see(&mut self, facing: Facing) {
         if self.waiting.is_none() && self.own.is_none() {
             self.waiting = Some(facing);
@@ -391,7 +404,7 @@ impl<E: Fn(u32) -> f64> Way<'_, E> {
             Some(triangle) => surfaces.normal_now(now, triangle),
             None => surfaces.normal_of_node(now, point.nodes[0]),
         });
-        let listed = (self.triangles, edge(facing.triangle));
+        let listed = (self.triangles, ((self.reach)(facing.triangle), edge(facing.triangle)));
         let Some(facing) = surfaces.flank(now, (point, || own), listed, facing) else { return };
         let turned = facing.normal.dot(own);
         if turned >= TURNED_AWAY {

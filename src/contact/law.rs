@@ -35,10 +35,8 @@ pub struct Contact {
     pub pressing: f64,
     /// The tangential force on it (N).
     pub rubbing: DVec3,
-    /// How far it slides in the step (m), and what its force does in that (J, but for what the lengths of steps make of
-    /// it), by the mean of this step and the one before. Both are found where it presses.
+    /// How far it slides in the step (m), found where it presses.
     pub slid: f64,
-    pub work: f64,
     /// Whether friction does not hold it.
     pub slides: bool,
     /// Whether a spring presses: by the gap alone, whatever the step that is predicted.
@@ -68,7 +66,6 @@ impl Contact {
             pressing: 0.0,
             rubbing: DVec3::ZERO,
             slid: 0.0,
-            work: 0.0,
             // what nothing holds
             slides: true,
             springs: false,
@@ -129,17 +126,14 @@ impl Contact {
         change
     }
 
-    /// Notes where the point goes, what its force does, and how far it has slipped elastically, now that forces are
-    /// known.
+    /// Notes where the point goes and how far it has slipped elastically, now that forces are known.
     #[inline(always)]
-    fn note(&mut self, steps: &[DVec4], earlier: &[DVec4]) {
+    fn note(&mut self, steps: &[DVec4]) {
         if self.pressing <= 0.0 {
             self.slip = DVec3::ZERO;
             return;
         }
-        let [step, before] = self.parts.both_steps(steps, earlier);
-        self.step = step;
-        self.work = self.force().dot(0.5 * (before + self.step));
+        self.step = self.parts.step(steps);
         self.slid = if self.slides { self.along(self.step).length() } else { 0.0 };
         if self.friction <= 0.0 {
             self.slip = DVec3::ZERO;
@@ -259,14 +253,14 @@ impl ContactSet {
             }
         }
         (self.shares, self.responses) = (shares, responses);
-        let Self { batches, steps, earlier, forces, changes, of_nodes, .. } = self;
+        let Self { batches, steps, forces, changes, of_nodes, .. } = self;
         clear_forces(forces, steps.len());
         if of_nodes.is_empty() {
-            let notes = |contacts: &mut Vec<Contact>| cpu.dispatch(Note { contacts, steps, earlier, forces });
+            let notes = |contacts: &mut Vec<Contact>| cpu.dispatch(Note { contacts, steps, forces });
             return batches.iter_mut().for_each(notes);
         }
         cpu.for_each(of_batches(batches, changes), |(contacts, changes)| {
-            cpu.dispatch(Note { contacts: &mut *contacts, steps, earlier, forces: &mut [] });
+            cpu.dispatch(Note { contacts: &mut *contacts, steps, forces: &mut [] });
             contacts.iter().zip(changes).for_each(|(contact, change)| *change = contact.force());
         });
         of_nodes.add(changes, forces, cpu, |_, force| force);
@@ -277,6 +271,13 @@ impl ContactSet {
         let Self { batches, steps, forces, .. } = self;
         clear_forces(forces, steps.len());
         batches.iter().for_each(|contacts| cpu.dispatch(Forces { contacts, forces }));
+    }
+
+    /// What contacts do (J, but for what the lengths of steps make of it) to each node that they push, by its place and
+    /// by the mean of its next step and the one before.
+    pub fn works(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let pushed = self.forces.iter().enumerate().filter(|(_, force)| **force != DVec4::ZERO);
+        pushed.map(move |(node, force)| (node, 0.5 * force.dot(self.earlier[node] + self.steps[node])))
     }
 
     /// What its contacts begin the step with.

@@ -49,18 +49,6 @@ impl Parts {
         step.truncate()
     }
 
-    /// The point's next and last step against the face (m), of as many nodes each.
-    #[inline(always)] // likewise
-    pub(super) fn both_steps(&self, steps: &[DVec4], earlier: &[DVec4]) -> [DVec3; 2] {
-        let (nodes, weights) = self.slices();
-        let [mut next, mut last] = [DVec4::ZERO; 2];
-        for (&node, &weight) in nodes.iter().zip(weights) {
-            next += steps[node as usize] * weight;
-            last += earlier[node as usize] * weight;
-        }
-        [next.truncate(), last.truncate()]
-    }
-
     /// Adds to the forces on nodes (N) what a force on the point is to them.
     #[inline(always)] // likewise
     pub(super) fn share(&self, force: DVec3, forces: &mut [DVec4]) {

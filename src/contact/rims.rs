@@ -1,6 +1,6 @@
 //! Rims: where two flanks of a surface meet at an edge, which of them a point faces.
 
-use super::candidates::ON_IT;
+use super::candidates::{NEARER, ON_IT};
 use super::facing::{ALIKE, Facing, TURNED_AWAY};
 use super::surfaces::{Placed, Point, Surfaces};
 use crate::mesh::OnTriangle;
@@ -27,13 +27,13 @@ impl Surfaces {
     /// two that do neither is in its way, since less than a twentieth of an edge of one is before the other.
     ///
     /// Whether it is at a rim is all that is asked of most: only then is it asked for the point's own normal. `listed`
-    /// are the triangles that may be near it, ascending, `edge` is the length of an edge (m), the smaller of its body's
-    /// and the face's.
+    /// are the triangles that may be near it, ascending, `reach` is how far off they are looked at, and `edge` the
+    /// length of an edge (both m), the smaller of its body's and the face's.
     pub(super) fn flank(
         &self,
         now: Placed<'_>,
         (point, own): (&Point, impl FnOnce() -> DVec3),
-        (listed, edge): (&[u32], f64),
+        (listed, (reach, edge)): (&[u32], (f64, f64)),
         facing: Facing,
     ) -> Option<Facing> {
         let flanks = self.flanks(now, &facing, edge);
@@ -67,7 +67,7 @@ impl Surfaces {
         for (other, of_other) in flanks {
             let distance = at.distance(OnTriangle::nearest(at, self.corners(now.places, other)).at);
             // what is as near is in every list
-            if distance > self.depths[other as usize] || listed.binary_search(&other).is_err() {
+            if distance > f64::max(self.depths[other as usize], reach) || listed.binary_search(&other).is_err() {
                 continue;
             }
             let (turned, turned_least) = (own.dot(of_other), least(of_other));
@@ -106,7 +106,47 @@ impl Surfaces {
         }
         // what is behind the wall is before some face of the flank
         let weights = weights_in_plane(below, corners);
-        (!is_other || outside > -ON_IT * edge).then_some(Facing { triangle, weights, at: below, normal, gap })
+        (!is_other || outside > -ON_IT * edge).then_some(Facing { triangle, weights, at: below, normal, gap, part: 0 })
+    }
+
+    /// What a point faces that is before a side or a corner, by where its `step` against that (m) ends. The plane
+    /// across the way from there is no wall: what glides past a rim would end behind it, and be braked and thrown aside
+    /// where nothing is. What is at the side or corner is behind the planes of all triangles around it, so that the
+    /// point ends outside of it by as much at least as outside of any of them: it faces the one that it ends the
+    /// farthest outside of, or the way where that is more. So what ends inside is behind all of them, whichever it is.
+    ///
+    /// Not asked are planes that the point is behind as it is, for it would be thrown out, those of triangles that it
+    /// may not meet, and those before which some of what is around the place rises by more than a twentieth.
+    pub fn faced_at_end(
+        &self,
+        places: &[DVec3],
+        (point, step): (&Point, DVec3),
+        facing: Facing,
+        may_meet: impl Fn(u32) -> bool,
+    ) -> Facing {
+        let at = point.place(places);
+        let mut around: SmallVec<[u32; 8]> = self.around_part(facing.triangle, facing.part as usize).collect();
+        around.push(facing.triangle);
+        // of planes that are alike the first, whichever triangle has been found
+        around.sort_unstable();
+        let (mut found, mut farthest) = (facing, facing.normal.dot(at + step - facing.at));
+        let more = (1.0 - NEARER) * at.distance(facing.at);
+        for &triangle in &around {
+            let (normal, corners) = (self.normal(places, triangle), self.corners(places, triangle));
+            let gap = (at - corners[0]).dot(normal);
+            let ends = gap + step.dot(normal);
+            let is_behind = |corner: DVec3| {
+                let off = corner - facing.at;
+                off.dot(normal) <= ALIKE * off.length()
+            };
+            let all_behind = || around.iter().flat_map(|&other| self.corners(places, other)).all(is_behind);
+            if normal != DVec3::ZERO && gap >= 0.0 && ends > farthest + more && may_meet(triangle) && all_behind() {
+                let below = at - gap * normal;
+                let weights = weights_in_plane(below, corners);
+                (found, farthest) = (Facing { triangle, weights, at: below, normal, gap, part: 0 }, ends);
+            }
+        }
+        found
     }
 
     /// Whether a triangle may be at a rim as long as no two nodes move against each other by more than a distance (m).

@@ -16,7 +16,9 @@ pub struct ContactReading {
     pub points: usize,
     /// How deep the deepest of these is inside (m); 0 where none is.
     pub penetration: f64,
-    /// What impact and friction at these have taken since the start (J); none in a static analysis, which counts none.
+    /// What contact has taken of its energy since the start (J): negative where others have given it more, who have
+    /// lost that. Summed over all bodies it is what impact and friction between them have taken. None in a static
+    /// analysis, which counts none.
     pub loss: Option<f64>,
 }
 

@@ -9,8 +9,11 @@ use crate::contact::{Faced, Kept, Lately, Listed, Own, Placed, Shortlist, Stays}
 const POINTS_A_TASK: usize = 128;
 
 /// The normals of all that is near are found beforehand where there are no more triangles than so many for each point
-/// that is awake, or more than one of so many points goes through its list: else few are asked for.
-const KNOWN: usize = 8;
+/// that is awake.
+const TRIANGLES_A_POINT: usize = 8;
+
+/// They are, too, where more than one of so many points that are awake goes through its list: else few are asked for.
+const POINTS_A_LIST: usize = 8;
 
 /// One triangle of a shortlist alone is to matter while nodes move so much of how far shortlists may serve; and it is
 /// counted anew how far nodes have gone when that is so many times as much, for it is kept in few digits.
@@ -80,8 +83,8 @@ pub(super) fn face<M: Send>(
     let surface = &mut contacts.surface;
     let awake = std::mem::take(&mut surface.awake);
     let unknown = awake.iter().filter(|&&place| !surface.shortlists[place as usize].is_known()).count();
-    let are_few = surface.near.triangles.len() <= KNOWN * awake.len();
-    let has_normals = are_few || KNOWN * unknown > awake.len() || !surface.crossings.near.is_empty();
+    let are_few = surface.near.triangles.len() <= TRIANGLES_A_POINT * awake.len();
+    let has_normals = are_few || POINTS_A_LIST * unknown > awake.len() || !surface.crossings.near.is_empty();
     if has_normals {
         update_normals(surface, cpu);
     }

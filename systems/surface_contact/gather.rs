@@ -155,15 +155,24 @@ impl Nodes<'_> {
         self.between([point.slices(), (&corners[..], &weights[..])])
     }
 
-    /// Adds a contact of nodes with weights, along a normal with a gap (m) and with friction and slip, if it ends
-    /// nearer than `within` (m): as far outside (m) as that; with a spring, which asks for nothing else, as far as it
-    /// is.
+    /// What a point faces of what it sees, by where it would end.
+    fn faced_at_end(&self, contacts: &SurfaceContacts, number: u32, faced: &Faced) -> Faced {
+        let step = |point: &Point, facing: &Facing| self.parts(&contacts.surface, point, facing).step(self.steps);
+        let at_end = |facing: &Facing| contacts.faced_at_end(number, facing, false, step);
+        let [first, second] = [&faced.first, &faced.second].map(|facing| facing.as_ref().map(at_end));
+        Faced { first, second, ..*faced }
+    }
+
+    /// Adds a contact of nodes with weights, along a normal with a gap (m), if it ends nearer than `within` (m): as far
+    /// outside (m) as that; with a spring, which asks for nothing else, as far as it is. Only then it is asked for
+    /// friction and slip (m).
     #[inline(always)] // likewise
     fn add(
         &self,
         batch: &mut Vec<Contact>,
         parts: Parts,
-        ((normal, gap), resists): ((DVec3, f64), (f64, DVec3)),
+        (normal, gap): (DVec3, f64),
+        resists: impl FnOnce() -> (f64, DVec3),
         (spring, outside, within): (Option<ContactSpring>, f64, f64),
         of: Met,
     ) {
@@ -176,7 +185,7 @@ impl Nodes<'_> {
             }
         };
         if ends < within {
-            let mut contact = Contact::new(parts, (normal, gap, step), resists);
+            let mut contact = Contact::new(parts, (normal, gap, step), resists());
             (contact.springs, contact.point) = (spring.is_some(), of.point);
             (contact.is_first, contact.outside) = (of.is_first, of.outside);
             batch.push(contact);
@@ -211,6 +220,8 @@ pub(super) fn gather<T: Scalar>(
     let nodes = Nodes { slots, steps, earlier, work_factor };
     let of_bodies = &*bodies;
     face(contacts, reach, cpu, batches.iter_mut().zip(&mut *seen), |contacts, point, faced, (batch, seen)| {
+        let at_end = faced.is_beside().then(|| nodes.faced_at_end(contacts, point, faced));
+        let faced = at_end.as_ref().unwrap_or(faced);
         let Some(first) = &faced.first else { return };
         let kept = contacts.kept(point);
         let touch = of_bodies[kept.body].kept(kept);
@@ -244,7 +255,8 @@ pub(super) fn gather<T: Scalar>(
         nodes.add(
             last,
             nodes.between([(&one.nodes, of_one), (&other.nodes, of_other)]),
-            ((crossing.normal, gap), (friction[1], DVec3::ZERO)),
+            (crossing.normal, gap),
+            || (friction[1], DVec3::ZERO),
             (spring, outside, 0.0),
             met,
         );
@@ -269,16 +281,8 @@ impl Nodes<'_> {
         for (facing, is_first) in both.into_iter().filter_map(|(facing, is_first)| Some((facing.as_ref()?, is_first))) {
             let body = surface.triangles.bodies[facing.triangle as usize];
             let Some(meeting) = contacts.meeting(point.body, body) else { continue };
-            let Meeting { friction, thickness, spring, edge, .. } = meeting;
-            let turned = contacts.turned(thickness, facing.triangle, bodies);
+            let Meeting { friction, spring, edge, .. } = meeting;
             let parts = if is_first { of_first } else { self.parts(surface, point, facing) };
-            // what touched nothing and does not slip is held by the static coefficient
-            let still = || {
-                let before = parts.step(self.earlier) - turned;
-                (before - facing.normal * facing.normal.dot(before)).length() <= STILL * edge
-            };
-            let is_held = state == STICKS || state != SLIDES && friction[0] != friction[1] && still();
-            let friction = friction[usize::from(!is_held)];
             // of another face nothing is known of how it got there
             let (outside, allowed, slip) = match is_first {
                 true => (outside, allowed, slip),
@@ -288,11 +292,22 @@ impl Nodes<'_> {
                 true => (outside - allowed).max(-OUT * edge),
                 false => outside.max(-meeting.settling(clock)),
             };
+            let resists = || {
+                let turned = contacts.turned(&meeting, (point, facing), bodies);
+                // what touched nothing and does not slip is held by the static coefficient
+                let still = || {
+                    let before = parts.step(self.earlier) - turned;
+                    (before - facing.normal * facing.normal.dot(before)).length() <= STILL * edge
+                };
+                let is_held = state == STICKS || state != SLIDES && friction[0] != friction[1] && still();
+                (friction[usize::from(!is_held)], slip - turned)
+            };
             let within = if point.triangle.is_some() { SHARES * edge } else { 0.0 };
             self.add(
                 batch,
                 parts,
-                ((facing.normal, gap), (friction, slip - turned)),
+                (facing.normal, gap),
+                resists,
                 (spring, outside - allowed, within),
                 Met { point: number, is_first, outside },
             );

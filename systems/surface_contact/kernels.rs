@@ -3,8 +3,8 @@
 //! where tools may hold it), what its nodes and points of its faces face (`surface_contact`). Then for all: which edges
 //! cross (`surface_contact_edges`), into how many shares masses are split (`surface_contact_share`), and in each sweep
 //! normal forces (`surface_contact_impulse`), what they do to nodes (`surface_contact_apply`), and the same with
-//! `surface_contact_friction` where there is any. At last, for each body: its loads (`surface_contact_push`), and what
-//! is kept of contacts (`surface_contact_touch`).
+//! `surface_contact_friction` where there is any. At last, for each body: its loads and what contact takes of it
+//! (`surface_contact_push`), and what is kept of contacts (`surface_contact_touch`).
 
 use super::device::{MOTION_WORDS, SurfaceContact, find, is_on_device, note};
 use super::gather::OUT;
@@ -241,8 +241,8 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
     for &(body, of) in &of_bodies {
         let surface = buffers.uniform("surface_contact of a body".into(), &of.bytes());
         let push = shared.kernel("surface_contact_push", shader!("surface_contact_push"), surface, world);
-        let push = shared.of_nodes(push).fragment(shader!("surface_motion")).bind("surface_rows", shared.rows);
-        let columns = [ExternalForce::NAME, ContactForce::NAME];
+        let push = shared.relative(shared.of_nodes(push)).fragment(numbers_met()).bind("surface_rows", shared.rows);
+        let columns = [ExternalForce::NAME, ContactForce::NAME, SurfaceTouch::NAME];
         let push = columns.into_iter().fold(push, |kernel, name| kernel.bind(name, buffers.column(body, name)));
         all.push(push.threads(of.count));
         let of_body = points.iter().filter(|points| points.body == body);
@@ -277,6 +277,11 @@ fn before(
     ([place, nodes.foresee("surface_contact_foresee", body, world, buffers)], nodes)
 }
 
+/// How many numbers of a node contact keeps.
+fn numbers_met() -> Fragment {
+    Fragment::new("generated: numbers of a node", format!("const MET: u32 = {MEETING_NUMBERS}u;\n"))
+}
+
 /// What gives a kernel `note_farther`, for systems that act on nodes of a body after contact: its text, and the columns
 /// that it asks for.
 pub(in crate::systems) fn note_farther(body: Entity, world: &World) -> (Vec<Fragment>, &'static [&'static str]) {
@@ -284,8 +289,7 @@ pub(in crate::systems) fn note_farther(body: Entity, world: &World) -> (Vec<Frag
         let text = "fn note_farther(node: u32, farther: vec3<f32>) {}\n";
         return (vec![Fragment::new("generated: the surface meets nothing", text)], &[]);
     }
-    let numbers = Fragment::new("generated: numbers of a node", format!("const MET: u32 = {MEETING_NUMBERS}u;\n"));
-    (vec![numbers, shader!("contact_farther")], &[ContactForce::NAME, SurfaceTouch::NAME])
+    (vec![numbers_met(), shader!("contact_farther")], &[ContactForce::NAME, SurfaceTouch::NAME])
 }
 
 /// Nodes of a body whose next steps are wanted.

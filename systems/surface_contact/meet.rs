@@ -3,10 +3,10 @@
 use super::body_slices::{BodySlices, Kept, set_vector, vector};
 use super::faced::tasks;
 use super::gather::{Gathered, InStep, gather};
-use super::{Meeting, Surface, SurfaceContacts};
+use super::{Meeting, Surface, SurfaceContacts, motion};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
-use crate::contact::{Facing, Point, bilinear};
+use crate::contact::{ContactSet, Facing, Point, bilinear};
 use crate::math::Scalar;
 use glam::{DVec3, DVec4};
 
@@ -30,28 +30,52 @@ impl SurfaceContacts {
         InStep { largest: self.surface.motion.largest, settling }
     }
 
-    /// How far the end of a normal as long as a thickness (m) has gone in the last step as a triangle turned (m): a
-    /// point that stays above the same place goes as far along the face.
-    pub(super) fn turned<T: Scalar>(&self, thickness: f64, triangle: u32, bodies: &[BodySlices<'_, T>]) -> DVec3 {
-        if thickness <= 0.0 {
+    /// How far the end of a normal as long as the thickness has gone in the last step as the surface turned where a
+    /// point faces it (m): a point that stays above the same place goes as far along it. Around each node that bears
+    /// the point all triangles count: above nodes and sides several are as near, single ones of them rock as tissue
+    /// rings, and what goes along with one of these is pushed aside.
+    pub(super) fn turned<T: Scalar>(
+        &self,
+        meeting: &Meeting,
+        (point, facing): (&Point, &Facing),
+        bodies: &[BodySlices<'_, T>],
+    ) -> DVec3 {
+        // what nothing holds does not go along
+        if meeting.thickness <= 0.0 || meeting.friction == [0.0; 2] {
             return DVec3::ZERO;
         }
-        let corners = self.surface.triangles.triangles[triangle as usize];
-        let [a, b, c] = corners.map(|node| self.surface.places[node as usize]);
-        let [by_a, by_b, by_c] = corners.map(|node| {
-            let (body, row) = self.surface.nodes[node as usize];
-            vector(bodies[body as usize].step, row as usize)
-        });
-        // sides in the middle of the step, and how they changed in it
-        let [by_b, by_c] = [by_b - by_a, by_c - by_a];
-        let [b, c] = [b - a - 0.5 * by_b, c - a - 0.5 * by_c];
-        let (across, change) = (b.cross(c), by_b.cross(c) + b.cross(by_c));
+        let (corners, weights) = self.surface.corners_of(point, facing);
+        let mut turn = DVec3::ZERO;
+        for (node, weight) in corners.into_iter().zip(weights).filter(|(_, weight)| *weight != 0.0) {
+            turn += weight * self.turn_around(node, facing.normal, bodies);
+        }
+        meeting.thickness * turn.cross(facing.normal)
+    }
+
+    /// How the surface around a node has turned in the last step (rad), but for turns about its own normal. Triangles
+    /// count by their areas, and the more the more they look along `normal`: walls beyond a rim, that turn otherwise,
+    /// do not, and none begins to count all at once.
+    fn turn_around<T: Scalar>(&self, node: u32, normal: DVec3, bodies: &[BodySlices<'_, T>]) -> DVec3 {
+        let Surface { triangles, nodes, .. } = &self.surface;
+        let [mut across, mut change] = [DVec3::ZERO; 2];
+        for &triangle in triangles.around(node) {
+            let corners = triangles.triangles[triangle as usize];
+            // of the fourth corner of a quadrilateral some may be beyond what is near, whose places are not followed
+            let [a, b, c] = corners.map(|corner| motion::place(self, bodies, corner as usize));
+            let [by_a, by_b, by_c] = corners.map(|corner| {
+                let (body, row) = nodes[corner as usize];
+                vector(bodies[body as usize].step, row as usize)
+            });
+            // sides in the middle of the step, and how they changed in it
+            let [by_b, by_c] = [by_b - by_a, by_c - by_a];
+            let [b, c] = [b - a - 0.5 * by_b, c - a - 0.5 * by_c];
+            let of_triangle = b.cross(c);
+            let share = normal.dot(of_triangle.normalize_or_zero()).max(0.0);
+            across += share * of_triangle;
+            change += share * (by_b.cross(c) + b.cross(by_c));
+        }
         let size = across.length();
-        if size <= 0.0 {
-            return DVec3::ZERO;
-        }
-        let normal = across / size;
-        (change - normal * normal.dot(change)) * (thickness / size)
+        if size > 0.0 { (across / size).cross(change / size) } else { DVec3::ZERO }
     }
 
     /// Where a point's numbers are.
@@ -161,7 +185,10 @@ pub(super) fn meet<T: Scalar>(
         gain.energy += coefficients.work_factor * gathered.set.beyond_bound(&gathered.before);
     }
     let work_factor = clock.relaxation.is_none().then_some(coefficients.work_factor);
-    note_touches(contacts, &gathered, work_factor, bodies);
+    note_touches(contacts, &gathered, work_factor.is_some(), bodies);
+    if let Some(work_factor) = work_factor {
+        count_work(&contacts.surface, &gathered.set, work_factor, bodies);
+    }
     push(contacts, &gathered.set.forces, bodies);
     contacts.surface.gathered = gathered;
 }
@@ -170,7 +197,7 @@ pub(super) fn meet<T: Scalar>(
 fn note_touches<T: Scalar>(
     contacts: &mut SurfaceContacts,
     Gathered { set, .. }: &Gathered,
-    work_factor: Option<f64>,
+    counts_ways: bool,
     bodies: &mut [BodySlices<'_, T>],
 ) {
     let mut deepest = contacts.surface.figures.deepest;
@@ -183,12 +210,26 @@ fn note_touches<T: Scalar>(
             set_vector(touch, 0, contact.slip);
             touch[4] = T::from_f64(if contact.slides { SLIDES } else { STICKS });
         }
-        if let Some(work_factor) = work_factor {
+        if counts_ways {
             touch[6] = T::from_f64(touch[6].to_f64() + contact.slid);
-            touch[7] = T::from_f64(touch[7].to_f64() - work_factor * contact.work);
         }
     }
     contacts.surface.figures.deepest = deepest;
+}
+
+/// Counts what contact takes of each node, with `work_factor` for each joule, by where that goes by now. Who acts on
+/// nodes after this counts in the same place what that changes (`note_farther`).
+fn count_work<T: Scalar>(
+    Surface { nodes, near, .. }: &Surface,
+    set: &ContactSet,
+    work_factor: f64,
+    bodies: &mut [BodySlices<'_, T>],
+) {
+    for (place, work) in set.works() {
+        let (body, row) = nodes[near.nodes[place] as usize];
+        let taken = &mut bodies[body as usize].touch[MEETING_NUMBERS * row as usize + 7];
+        *taken = T::from_f64(taken.to_f64() - work_factor * work);
+    }
 }
 
 /// Adds the forces to the loads, and notes them.

@@ -140,7 +140,7 @@ fn follow<T: Scalar>(
 
 /// Where a node is (m, from the reference).
 #[inline(always)] // with the instructions of whoever asks
-fn place<T: Scalar>(contacts: &SurfaceContacts, bodies: &[BodySlices<'_, T>], node: usize) -> DVec3 {
+pub(super) fn place<T: Scalar>(contacts: &SurfaceContacts, bodies: &[BodySlices<'_, T>], node: usize) -> DVec3 {
     let (body, row) = contacts.surface.nodes[node];
     let (of_body, row) = (&bodies[body as usize], row as usize);
     of_body.rest[row] - contacts.reference + of_body.displacement(row)

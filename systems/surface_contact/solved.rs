@@ -6,7 +6,7 @@ use super::meet::{FACES, SLIDES, STICKS, forget, push, release};
 use super::{Meeting, SurfaceContacts, crossings, faced};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
-use crate::contact::{Contact, Parts, Point};
+use crate::contact::{Contact, Facing, Parts, Point};
 use crate::error::Error;
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
@@ -25,6 +25,8 @@ pub(super) struct Pair {
     normal: DVec3,
     /// Nodes with signed weights.
     nodes: SmallVec<[(u32, f64); 8]>,
+    /// How many of these, the first, are the point's: of the face's, too, some weights may be positive.
+    points: usize,
     /// How deep it may be inside (m, 0 or negative): as deep as it is found where it was not before.
     allowed: f64,
     /// What is missing to the gap (m) beside the places of the nodes along the normal.
@@ -34,6 +36,11 @@ pub(super) struct Pair {
 }
 
 impl Pair {
+    /// The point's nodes and their weights.
+    fn of_point(&self) -> &[(u32, f64)] {
+        &self.nodes[..self.points]
+    }
+
     /// How far the point is outside of where it may be (m), where nodes are.
     fn gap(&self, places: &[DVec3]) -> f64 {
         let along = |&(node, weight): &(u32, f64)| weight * self.normal.dot(places[node as usize]);
@@ -97,16 +104,27 @@ pub(super) fn pair<T: Scalar>(
         let offset = gap - pair.allowed - pair.gap(&surface.places);
         pairs.push(Pair { offset, ..pair });
     };
+    // on the way to rest there is no motion
+    let goes_on = |point: &Point, facing: &Facing| -> DVec3 {
+        let (corners, weights) = surface.corners_of(point, facing);
+        let of_face = corners.into_iter().zip(weights).map(|(node, weight)| (node, -weight));
+        let step = |(node, weight): (u32, f64)| {
+            let (body, row) = surface.nodes[node as usize];
+            weight * vector_at(bodies[body as usize].step, 3 * row as usize)
+        };
+        if clock.relaxation.is_some() { DVec3::ZERO } else { point.parts().chain(of_face).map(step).sum() }
+    };
     for &(number, faced) in found.iter().flatten() {
         let point = &surface.points[number as usize];
         for (facing, first) in [(&faced.first, true), (&faced.second, false)] {
             let Some(facing) = facing else { continue };
+            let facing = &contacts.faced_at_end(number, facing, true, &goes_on);
             let body = surface.triangles.bodies[facing.triangle as usize];
             let Some(meeting) = contacts.meeting(point.body, body) else { continue };
             let in_step = contacts.in_step(point, facing, clock);
             let (corners, weights) = surface.corners_of(point, facing);
             let of_face = corners.into_iter().zip(weights).map(|(node, weight)| (node, -weight));
-            let nodes = point.parts().chain(of_face).collect();
+            let (nodes, points) = (point.parts().chain(of_face).collect(), point.parts().count());
             let (gap, kept) = (contacts.gap(point, facing), contacts.kept(number));
             let allowed = match (first, &clock.springs) {
                 (true, _) => allowed(bodies[kept.body].kept(kept), gap, 0.0, &in_step),
@@ -117,11 +135,11 @@ pub(super) fn pair<T: Scalar>(
             };
             // on the way to rest nobody knows it before nodes are where they will be
             let turned = match clock.relaxation {
-                None => contacts.turned(meeting.thickness, facing.triangle, bodies),
+                None => contacts.turned(&meeting, (point, facing), bodies),
                 Some(_) => DVec3::ZERO,
             };
             let (point, normal) = (number, facing.normal);
-            add(Pair { meeting, point, first, normal, nodes, allowed, offset: 0.0, turned }, gap);
+            add(Pair { meeting, point, first, normal, nodes, points, allowed, offset: 0.0, turned }, gap);
         }
     }
     // nothing is known of how edges slipped that cross
@@ -138,6 +156,7 @@ pub(super) fn pair<T: Scalar>(
             first: false,
             normal: crossing.normal,
             nodes,
+            points: one.nodes.len(),
             allowed: 0.0,
             offset: 0.0,
             turned: DVec3::ZERO,
@@ -156,13 +175,12 @@ fn borne<T: Scalar>(
     bodies: &[BodySlices<'_, T>],
 ) -> f64 {
     let Some(spring) = meeting.spring else { return 0.0 };
-    let (mut mass, mut force) = (0.0, 0.0);
-    for (node, weight) in point.parts() {
+    let on_node = |(node, _): (u32, f64)| {
         let (body, row) = contacts.surface.nodes[node as usize];
-        let of_body = &bodies[body as usize];
-        mass += weight * of_body.weighs[row as usize].to_f64();
-        force += normal.dot(vector_at(of_body.force, 3 * row as usize));
-    }
+        normal.dot(vector_at(bodies[body as usize].force, 3 * row as usize))
+    };
+    let force: f64 = point.parts().map(on_node).sum();
+    let mass = mass_between(contacts, point.parts(), bodies);
     let stiffness = spring.press(springs, mass, 0.0, [0.0, springs.step]).stiffness;
     (gap + force.max(0.0) / stiffness).min(0.0)
 }
@@ -194,7 +212,7 @@ pub(super) fn press<T: Scalar>(
         }
         let mass = match &shares {
             Some(shares) => shared_mass(contacts, pair, (&gathered, &shares[..]), bodies),
-            None => mass_of_point(contacts, pair, bodies),
+            None => mass_between(contacts, pair.of_point().iter().copied(), bodies),
         };
         add(contacts, &mut gathered, (pair, gap, mass), (springs, time), bodies, &mut solved);
     }
@@ -208,14 +226,17 @@ pub(super) fn press<T: Scalar>(
     (contacts.surface.gathered, contacts.surface.pairs, contacts.surface.solved) = (gathered, pairs, solved);
 }
 
-/// The mass of the point of a pair (kg).
-fn mass_of_point<T: Scalar>(contacts: &SurfaceContacts, pair: &Pair, bodies: &[BodySlices<'_, T>]) -> f64 {
-    let of_point = pair.nodes.iter().filter(|(_, weight)| *weight > 0.0);
-    let mass = |&(node, weight): &(u32, f64)| {
+/// The mass of a point between nodes with weights (kg).
+fn mass_between<T: Scalar>(
+    contacts: &SurfaceContacts,
+    parts: impl Iterator<Item = (u32, f64)>,
+    bodies: &[BodySlices<'_, T>],
+) -> f64 {
+    let mass = |(node, weight): (u32, f64)| {
         let (body, row) = contacts.surface.nodes[node as usize];
         weight * bodies[body as usize].weighs[row as usize].to_f64()
     };
-    of_point.map(mass).sum()
+    parts.map(mass).sum()
 }
 
 /// Into how many shares the mass of each node in the set is split, by the weights of all that touches there; points of
@@ -319,10 +340,9 @@ fn note<T: Scalar>(
     }
 }
 
-/// Counts what contact takes in a step that is found, and how far points slide. Forces work with the mean of those at
-/// both ends, as all in implicit steps. Of those at the beginning, `last`, only the sum at each node is known
-/// ([`ContactForce`]): what they take is shared out among all nodes that bore some of bodies that meet, by how much
-/// they bore. `first_axis` is that of a body, and `moved` says how far the node goes whose first axis it is (m).
+/// Counts what contact takes of each node in a step that is found, and how far points slide. Forces work with the mean
+/// of those at both ends, as all in implicit steps: `last`, and what nodes bear now ([`ContactForce`]). `first_axis` is
+/// that of a body, and `moved` says how far the node goes whose first axis it is (m).
 pub(crate) fn count_work(
     world: &mut World,
     last: &[(Entity, Reals)],
@@ -333,41 +353,30 @@ pub(crate) fn count_work(
     let (surface, bodies) = (&contacts.surface, &contacts.bodies);
     let firsts: Vec<Option<usize>> = bodies.iter().map(|&body| first_axis(body)).collect();
     let mut counted = Vec::new();
-    for contact in surface.gathered.set.contacts() {
+    for contact in surface.gathered.set.contacts().filter(|contact| contact.slides) {
         let part = |(slot, weight): (usize, f64)| {
             let (body, row) = surface.nodes[surface.near.nodes[slot] as usize];
             Some(moved(firsts[body as usize]? + 3 * row as usize) * weight)
         };
         let relative: DVec3 = contact.parts.iter().filter_map(part).sum();
-        let slid = if contact.slides { contact.along(relative).length() } else { 0.0 };
-        let kept = contacts.kept(contact.point);
-        counted.push((bodies[kept.body], kept, [slid, -0.5 * contact.force().dot(relative)]));
+        let Kept { body, of_face, first } = contacts.kept(contact.point);
+        counted.push((bodies[body], of_face, first + 6, contact.along(relative).length()));
     }
-    let groups = contacts.groups();
-    // of each group what its nodes bore, and what that took
-    let mut sums = vec![[0.0; 2]; bodies.len()];
-    let mut bore = Vec::new();
-    for (body, (entity, first)) in bodies.iter().zip(&firsts).enumerate() {
-        let forces = last.iter().find(|(other, _)| other == entity);
-        let (Some((_, forces)), &Some(first)) = (forces, first) else { continue };
-        for (row, force) in forces.vectors().enumerate().filter(|(_, force)| *force != DVec3::ZERO) {
-            let [all, taken] = &mut sums[groups[body]];
-            *all += force.length();
-            *taken -= 0.5 * force.dot(moved(first + 3 * row));
-            bore.push((body, row, force.length()));
+    for (&body, first) in bodies.iter().zip(&firsts) {
+        let (Some(now), &Some(first)) = (world.get::<ContactForce>(body), first) else { continue };
+        let before = last.iter().find(|(other, _)| *other == body).map(|(_, forces)| forces);
+        for (row, force) in now.vectors().enumerate() {
+            let forces = force + before.map_or(DVec3::ZERO, |before| before.vector(row));
+            if forces != DVec3::ZERO {
+                let taken = -0.5 * forces.dot(moved(first + 3 * row));
+                counted.push((body, false, MEETING_NUMBERS * row + 7, taken));
+            }
         }
     }
-    for (body, row, force) in bore {
-        let [all, taken] = sums[groups[body]];
-        let kept = Kept { body, of_face: false, first: MEETING_NUMBERS * row };
-        counted.push((bodies[body], kept, [0.0, taken * force / all]));
-    }
-    for (body, Kept { of_face, first, .. }, parts) in counted {
+    for (body, of_face, number, more) in counted {
         let add = |touch: &mut Reals| {
-            for (number, part) in (first + 6..).zip(parts) {
-                let sum = touch.get(number) + part;
-                touch.set(number, sum);
-            }
+            let sum = touch.get(number) + more;
+            touch.set(number, sum);
         };
         // what contact goes on from stays as it is
         if let Some(mut touch) = world.get_mut::<FaceTouch>(body).filter(|_| of_face) {
@@ -378,15 +387,5 @@ pub(crate) fn count_work(
     }
 }
 
-impl SurfaceContacts {
-    /// Of each body the number of its group: those that meet each other, by way of others or not.
-    fn groups(&self) -> Vec<usize> {
-        let count = self.bodies.len();
-        let mut groups: Vec<usize> = (0..count).collect();
-        for (pair, _) in self.meetings.iter().enumerate().filter(|(_, meeting)| meeting.is_some()) {
-            let [one, other] = [groups[pair / count], groups[pair % count]];
-            groups.iter_mut().filter(|group| **group == other).for_each(|group| *group = one);
-        }
-        groups
-    }
-}
+#[cfg(test)]
+mod tests;

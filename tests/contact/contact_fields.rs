@@ -240,3 +240,27 @@ fn a_gap_is_told_from_an_edge_on_whatever_a_step_reaches() {
         }
     }
 }
+
+/// What is gone faces nothing: its gap is the mean length of an edge, as of all that is far from everything.
+#[test]
+fn what_is_gone_touches_nothing() {
+    for run in cpu_and_long_gpu() {
+        let mut simulation = run.start(
+            "(duration: 0.02, integration: (step: 5e-4), bodies: {
+                \"b\": (mesh: Box(size: (0.012, 0.012, 0.012), cells: (2, 2, 2), elements: Hex8), material: \"m\"),
+                \"c\": (mesh: Box(size: (0.012, 0.012, 0.012), cells: (2, 2, 2), elements: Hex8), material: \"m\",
+                    translate: (0, 0, 0.014))},
+            materials: {\"m\": (density: 1000, neo_hookean: Young(young: 1e4, poisson: 0.3))},
+            contacts: [Between(bodies: (\"b\", \"c\"))], removal: [(body: \"c\", when: At(0.01))],
+            probes: {\"b\": (body: \"b\", what: ContactGap, on: All),
+                \"c\": (body: \"c\", what: ContactGap, on: All)})",
+        );
+        for (time, gap) in [(0.005, 2e-3), (0.015, 6e-3)] {
+            simulation.advance_to(time).unwrap();
+            for body in ["b", "c"] {
+                let what = format!("{}, {body} at {time} s", run.name);
+                near(&what, simulation.probe(body).unwrap()[0], gap, gap, 1e-5);
+            }
+        }
+    }
+}

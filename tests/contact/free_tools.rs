@@ -228,6 +228,23 @@ fn what_goes_on_from_a_snapshot_of_a_free_tool_gives_the_same_bits_on_each_backe
     }
 }
 
+/// A rod whose middle is not its origin: arms turn with it, by how long the step was that it felt something in.
+#[test]
+fn a_moment_that_was_felt_stays_where_the_next_step_is_another() {
+    let rod = "Capsule(length: 0.02, radius: 0.008), at: (0.013, 0.007, 0.0221)";
+    let mut simulation =
+        start(&HIT.replace("Sphere(radius: 0.008), at: (0.013, 0.007, 0.0281)", rod), Precision::F64, 1);
+    while simulation.time() < 0.1 && simulation.tool("ball").unwrap().nodes == 0 {
+        simulation.advance(1).unwrap();
+    }
+    simulation.advance(3).unwrap();
+    let before = simulation.tool("ball").unwrap();
+    simulation.set_time_step(0.2 * simulation.time_step()).unwrap();
+    let after = simulation.tool("ball").unwrap();
+    assert!(before.force.length() > 0.0, "{before:?}");
+    assert_eq!((after.force, after.torque), (before.force, before.torque));
+}
+
 #[test]
 fn probes_tell_where_tools_are_and_how_fast() {
     for run in configurations() {

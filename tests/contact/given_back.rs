@@ -99,3 +99,31 @@ fn what_holds_a_free_box_that_rests_is_not_warned_of() {
         assert!(warnings.iter().all(|notice| notice.criterion != "contact"), "{}: {warnings:?}", run.name);
     }
 }
+
+/// A heavy box that lies far off, on what is fixed, has nothing to do with two cubes that begin in each other: what they
+/// are pushed out with is told of whatever the box weighs.
+#[test]
+fn what_a_free_tool_weighs_excuses_no_other_contact() {
+    for run in cpu_and_long_gpu() {
+        for mass in [1.0, 1e-4] {
+            let mut simulation = run.start(&format!(
+                "(duration: 0.03, bodies: {{
+                    \"a\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (4, 4, 4)), material: \"m\"),
+                    \"b\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (3, 3, 3)), material: \"m\",
+                        translate: (0.001, 0.001, 0.018)),
+                    \"slab\": (mesh: Box(size: (0.2, 0.2, 0.01), cells: (10, 10, 1)), material: \"m\",
+                        translate: (0.9, -0.1, -0.01))}},
+                materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 5e3, poisson: 0.4))}},
+                constraints: [Fixed(body: \"slab\", on: All), Fixed(body: \"a\", on: Set(\"z0\"))],
+                loads: [Gravity(acceleration: (0, 0, -9.81))],
+                tools: {{\"box\": (shape: Box(size: (0.1, 0.1, 0.05)), at: (1, 0, 0.025), free: (mass: {mass:?}))}},
+                contacts: [Between(bodies: (\"a\", \"b\")), Tool(tool: \"box\", body: \"slab\")])"
+            ));
+            simulation.advance_to(0.03).unwrap();
+            simulation.observe().unwrap();
+            let warnings = simulation.summary("").unwrap().guards.warnings;
+            let told = warnings.iter().any(|notice| notice.criterion == "contact");
+            assert!(told, "{}, {mass} kg: {warnings:?}", run.name);
+        }
+    }
+}

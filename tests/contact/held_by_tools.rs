@@ -82,6 +82,43 @@ fn books_close_where_tools_hold_what_touches() {
     }
 }
 
+/// Two blocks side by side on a table that holds them by friction, and one of them by a wall: as they squat they press
+/// each other, and in each step the table undoes what contact foresees of their lowest nodes. What contact takes was
+/// booked to who owns the points, and what the table undoes to who owns the nodes: at rest one seemed to give the other
+/// an eighth of what both hold, each tenth of a second.
+#[test]
+fn of_what_rests_contact_takes_nothing() {
+    let block = |cells: u32, x: f64| {
+        format!(
+            "(mesh: Box(size: (0.02, 0.02, 0.02), cells: ({cells}, {cells}, {cells}), elements: Hex8MeanDilatation),
+                material: \"m\", translate: ({x}, 0, 0))"
+        )
+    };
+    let text = format!(
+        "(duration: 0.3, bodies: {{\"a\": {}, \"b\": {}}},
+        materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 5e4, poisson: 0.3), stiffness_damping: 5e-4)}},
+        loads: [Gravity(acceleration: (0, 0, -9.81), curve: Smooth(end: 0.05))],
+        tools: {{\"table\": (shape: Plane()), \"wall\": (shape: Plane(), rotation: (0, 90, 0))}},
+        contacts: [Tool(tool: \"table\", body: \"a\", friction: 0.3), Tool(tool: \"table\", body: \"b\", friction: 0.3),
+            Tool(tool: \"wall\", body: \"a\"), Between(bodies: (\"a\", \"b\"))])",
+        block(3, 0.0),
+        block(2, 0.02),
+    );
+    for run in configurations() {
+        let mut simulation = run.start(&text);
+        let [earlier, later] = [0.2, 0.3].map(|time| {
+            simulation.advance_to(time).unwrap();
+            ["a", "b"].map(|body| simulation.contact(body).unwrap())
+        });
+        let held = simulation.energies().unwrap().strain;
+        for (body, (earlier, later)) in ["a", "b"].iter().zip(earlier.iter().zip(&later)) {
+            let what = format!("{}, {body}", run.name);
+            assert!(later.force.x.abs() > 5e-3, "{what}: they press each other: {}", later.force);
+            near(&what, later.loss.unwrap(), earlier.loss.unwrap(), held, 5e-3);
+        }
+    }
+}
+
 /// A block between two plates that hold it by friction, and a free box that gravity pushes against its side. The
 /// plates push last, and undo what the box pushes nodes by: it went in deeper with every step, by 4 mm after .3 s. Now
 /// it stops where the nodes' masses over the square of the step bear it.

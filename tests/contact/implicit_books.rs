@@ -2,7 +2,7 @@
 
 use crate::bits::start;
 use crate::configurations::near;
-use sinew::components::Precision;
+use sinew::components::{Precision, WORK_NUMBERS, Work};
 
 /// A box of so many cells.
 fn block(name: &str, size: &str, cells: &str, how: &str) -> String {
@@ -95,7 +95,11 @@ fn contact_takes_in_implicit_steps_what_its_forces_take_from_bodies() {
                     (work, told) = (table.work.unwrap(), table.loss.unwrap());
                 }
                 for body in *meet {
-                    told += simulation.contact(body).unwrap().loss.unwrap();
+                    let taken = simulation.contact(body).unwrap().loss.unwrap();
+                    let view = simulation.column::<Work>(body).unwrap();
+                    let of_body = (0..view.values().len()).step_by(WORK_NUMBERS).map(|i| view.values().get(i)).sum();
+                    near(&format!("{what}: {body}"), of_body, -taken, scale, 1e-12);
+                    told += taken;
                 }
                 let e = simulation.energies().unwrap();
                 let (load_work, loss) = (e.load_work.unwrap(), e.contact_loss.unwrap());

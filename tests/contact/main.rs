@@ -7,6 +7,7 @@ mod asleep;
 mod attachments;
 mod bits;
 mod blades;
+mod capstan;
 #[path = "../physics/configurations.rs"]
 mod configurations;
 mod contact_fields;
@@ -38,6 +39,7 @@ mod implicit_grasps;
 mod implicit_ties;
 mod ironing;
 mod kinematic_rest;
+mod last_touches;
 mod lifted_tools;
 mod loads_that_grow;
 mod lost_surfaces;

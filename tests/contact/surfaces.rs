@@ -4,7 +4,9 @@ use crate::bits::bits;
 use crate::configurations::{ELEMENTS, configurations, cpu_and_long_gpu, near};
 use glam::DVec3;
 use sinew::Simulation;
-use sinew::components::{ContactForce, Displacement, DisplacementIncrement, MEETING_NUMBERS, Precision, SurfaceTouch};
+use sinew::components::{
+    ContactForce, Displacement, DisplacementIncrement, MEETING_NUMBERS, Precision, SurfaceTouch, WORK_NUMBERS, Work,
+};
 use sinew::mesh::{Locator, Mesh};
 use sinew::systems::{Registry, SurfaceContacts};
 
@@ -73,6 +75,14 @@ fn two_bars_exchange_their_velocities() {
             let lost = energies.contact_loss.unwrap();
             assert!(lost > 0.0, "{what}: lost {lost} J");
             near(&what, energies.load_work.unwrap(), -lost, start, run.bound(1e-12, 1e-5));
+            // nor to one of them alone: what comes loses all that it has, and the other gets it
+            for body in ["low", "high"] {
+                let taken = simulation.contact(body).unwrap().loss.unwrap();
+                let view = simulation.column::<Work>(body).unwrap();
+                let work: f64 = (0..view.values().len()).step_by(WORK_NUMBERS).map(|i| view.values().get(i)).sum();
+                near(&format!("{what}, {body}"), work, -taken, start, run.bound(1e-12, 3e-5));
+                near(&format!("{what}, {body}"), taken.abs(), start, start, 0.1);
+            }
             let share = (energies.kinetic + energies.internal_work.unwrap()) / start;
             assert!(share >= 1.0 - 1.0 / f64::from(cells) && share <= 1.001, "{what}: {share} of the energy");
         }

@@ -295,6 +295,14 @@ fn taken(loss: f64) -> String {
     }
 }
 
+/// What contact has taken of the energy of a body (J), or given it.
+fn exchanged(loss: f64) -> String {
+    match loss < 0.0 {
+        true => format!("contact gave it {}", quantity(-loss, "J")),
+        false => format!("contact took {} of its energy", quantity(loss, "J")),
+    }
+}
+
 fn contacts(summary: &Summary, page: &mut Page) {
     let lines = summary.contacts.iter().map(|(name, reading)| {
         let [x, y, z] = reading.force.to_array().map(|part| quantity(part, "N"));
@@ -303,7 +311,7 @@ fn contacts(summary: &Summary, page: &mut Page) {
             false => String::new(),
         };
         let points = counted(reading.points as u64, "point");
-        let loss = reading.loss.map_or(String::new(), |loss| format!("; {}", taken(loss)));
+        let loss = reading.loss.map_or(String::new(), |loss| format!("; {}", exchanged(loss)));
         format!("{name} feels ({x}, {y}, {z}) and touches with {points}{inside}{loss}")
     });
     page.rows("contacts", lines.collect::<Vec<_>>());

@@ -83,7 +83,6 @@ impl WithSimd for Push<'_> {
 pub(super) struct Note<'a> {
     pub contacts: &'a mut [Contact],
     pub steps: &'a [DVec4],
-    pub earlier: &'a [DVec4],
     pub forces: &'a mut [DVec4],
 }
 
@@ -91,10 +90,9 @@ impl WithSimd for Note<'_> {
     type Output = ();
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { contacts, steps, earlier, forces } = self;
-        let earlier = &earlier[..steps.len()];
+        let Self { contacts, steps, forces } = self;
         for contact in contacts {
-            contact.note(steps, earlier);
+            contact.note(steps);
             if !forces.is_empty() {
                 contact.parts.share(contact.force(), forces);
             }

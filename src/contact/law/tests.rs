@@ -92,7 +92,7 @@ fn momentum_stays_and_energy_is_below_its_bound() {
             assert_eq!(set.beyond_bound(&before.beginnings().collect::<Vec<_>>()), 0.0);
         }
         // what is lost is what the forces took
-        let took: f64 = set.contacts().map(|contact| contact.work).sum();
+        let took: f64 = set.works().map(|(_, work)| work).sum();
         assert!((later - earlier - took).abs() <= 1e-11 * earlier, "{} and {took}", later - earlier);
         for contact in set.contacts() {
             assert!(contact.pressing >= 0.0 && contact.rubbing.length() <= friction * contact.pressing * (1.0 + 1e-12));

@@ -1,7 +1,8 @@
 #![allow(clippy::expect_used)]
 
 use super::super::facing::tests::faced;
-use crate::contact::{Point, Surfaces};
+use crate::contact::{Facing, Point, Surfaces};
+use crate::mesh::OnTriangle;
 use glam::DVec3;
 
 /// A cube of edges of one metre whose lower face is at height 0 and whose front wall at x = 1, leaning forwards by so
@@ -60,6 +61,18 @@ fn what_is_before_a_wall_at_its_rim_faces_the_flank() {
     }
 }
 
+/// However far off faces are looked at: farther than insides go, too, as where a step leads farther.
+#[test]
+fn what_is_far_before_a_wall_at_its_rim_does_not_face_it() {
+    for (above, faces) in [(0.03, false), (-0.03, false), (0.06, true)] {
+        let (surfaces, places) = before_cube(DVec3::new(1.6, 0.3, above), DVec3::Z, 0.0);
+        let point = Point { triangle: Some(12), ..Point::node(1, 8) };
+        let all: Vec<u32> = (0..12).collect();
+        let found = faced(&surfaces, &places, &point, &all, |_| 0.8);
+        assert_eq!(found.first.is_some(), faces, "{above}: {found:?}");
+    }
+}
+
 #[test]
 fn what_is_well_above_the_rim_or_faces_the_wall_meets_it() {
     for (above, own) in [(0.06, DVec3::Z), (0.3, DVec3::Z), (0.01, DVec3::NEG_X), (0.01, DVec3::new(-0.8, 0.0, 0.6))] {
@@ -88,4 +101,73 @@ fn what_is_in_the_body_at_the_rim_of_a_leaning_wall_is_held() {
         }
         assert_eq!(sees_leaning([0.98, y, -0.01], DVec3::NEG_X, leans), None, "{y}, {leans}");
     }
+}
+
+/// What the triangle's first corner faces by its end, of a triangle of the lower face at the cube's front rim, whose
+/// nearest part it is before: with its step against that, and where only some triangles may be met. And the way.
+fn at_end(
+    (surfaces, places): &(Surfaces, Vec<DVec3>),
+    step: [f64; 3],
+    may_meet: impl Fn(u32) -> bool,
+) -> (Facing, DVec3) {
+    let (at, triangle) = (places[8], 1);
+    let OnTriangle { at: nearest, weights, part } = OnTriangle::nearest(at, surfaces.corners(places, triangle));
+    let gap = at.distance(nearest);
+    let way = (at - nearest) / gap;
+    let facing = Facing { triangle, weights, at: nearest, normal: way, gap, part: part as u32 };
+    let point = Point { triangle: Some(12), ..Point::node(1, 8) };
+    let found = surfaces.faced_at_end(places, (&point, DVec3::from(step)), facing, may_meet);
+    if found.part == 0 {
+        // what bears it is below it, so that forces have no moment
+        let corners = surfaces.corners(places, found.triangle);
+        let borne: DVec3 = corners.into_iter().zip(found.weights).map(|(corner, weight)| corner * weight).sum();
+        assert!(borne.distance(at - found.gap * found.normal) < 1e-12, "{borne}");
+    } else {
+        assert_eq!(found, facing);
+    }
+    (found, way)
+}
+
+#[test]
+fn what_is_before_a_rim_or_a_corner_faces_what_it_ends_the_farthest_outside_of() {
+    for y in [0.013, 0.3, 0.987, -0.05] {
+        let cube = before_cube(DVec3::new(1.06, y, -0.08), DVec3::Z, 0.0);
+        for (step, normal, gap) in [
+            // by below the cube, or into it a little above its lower face
+            ([-0.2, 0.0, 0.0], DVec3::NEG_Z, 0.08),
+            ([-0.3, 0.2, 0.1], DVec3::NEG_Z, 0.08),
+            // up before its front wall, or into that
+            ([-0.02, 0.1, 0.3], DVec3::X, 0.06),
+            ([-0.08, 0.1, 0.3], DVec3::X, 0.06),
+        ] {
+            let (found, _) = at_end(&cube, step, |_| true);
+            assert!((found.normal - normal).length() < 1e-12, "{y}, {step:?}: {}", found.normal);
+            assert!((found.gap - gap).abs() < 1e-12, "{y}, {step:?}: {}", found.gap);
+        }
+        // before it still, and of planes that it may not meet none
+        for step in [[0.0; 3], [-0.03, 0.0, 0.04]] {
+            let (found, way) = at_end(&cube, step, |_| true);
+            assert_eq!(found.normal, way, "{y}, {step:?}");
+        }
+        let (found, way) = at_end(&cube, [-0.2, 0.0, 0.0], |_| false);
+        assert_eq!(found.normal, way, "{y}");
+    }
+}
+
+/// Below a wall that leans back far the point is behind its plane, and would be thrown out of that.
+#[test]
+fn a_plane_that_the_point_is_behind_is_not_faced() {
+    let cube = before_cube(DVec3::new(1.02, 0.3, -0.08), DVec3::Z, -1.0);
+    let (found, _) = at_end(&cube, [-0.2, 0.0, 0.2], |_| true);
+    assert!((found.normal + DVec3::Z).length() < 1e-12 && (found.gap - 0.08).abs() < 1e-12, "{found:?}");
+}
+
+/// A corner whose front wall has a dent: what ends in the wall beside that is outside of a plane of the dent, and
+/// inside the body.
+#[test]
+fn a_plane_before_which_the_surface_rises_is_not_faced() {
+    let (surfaces, mut places) = before_cube(DVec3::new(1.08, -0.04, -0.045), DVec3::Z, 0.0);
+    places[7].x = 0.5;
+    let (found, _) = at_end(&(surfaces, places), [-0.1, 0.06, 0.345], |_| true);
+    assert!((found.normal + DVec3::Y).length() < 1e-12 && (found.gap - 0.04).abs() < 1e-12, "{found:?}");
 }
