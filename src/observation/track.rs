@@ -6,6 +6,7 @@
 
 use crate::components::Cadence;
 use crate::math::{degrees, turned};
+use crate::scene::schema::Quantity;
 use glam::DVec3;
 
 /// Rows of a table: time (s) and values.
@@ -56,6 +57,13 @@ impl Track {
         self.before = None;
     }
 
+    /// Whether a time that is asked for lies within the step that led to this one, at whose beginning nothing was
+    /// observed, as where a run goes on from its end: the row there is of another time.
+    pub fn lacks_beginning(&self, step: u64) -> bool {
+        let is_known = self.before.as_ref().is_some_and(|(at, _)| at + 1 == step);
+        self.every.is_due(step) && self.every.overshoot(step) > 0.0 && !is_known
+    }
+
     /// The rows that are due at a step with what is observed there; `last` is the end.
     pub fn rows(&self, step: u64, last: bool, (time, values): &Row) -> Vec<Row> {
         let due = self.every.is_due(step);
@@ -67,7 +75,7 @@ impl Track {
             (_, Some(asked)) if overshoot == 0.0 => rows.push((asked, values.clone())),
             (Some((at, (from, before))), Some(asked)) if at + 1 == step && *from <= asked && asked < *time => {
                 let share = (asked - from) / (time - from);
-                rows.push((asked, self.between([before, values], share)));
+                rows.push((asked, between(self.turn, [before, values], share)));
             }
             // nothing is known of the beginning of the step: the time is that of its end
             _ if due => rows.push((*time, values.clone())),
@@ -78,17 +86,23 @@ impl Track {
         }
         rows
     }
+}
 
-    /// What is a share of the way from some values to others. Rotations go the shorter way round, as a step does: their
-    /// numbers jump at half a turn.
-    fn between(&self, [before, after]: [&[f64]; 2], share: f64) -> Vec<f64> {
-        let mut between: Vec<f64> = before.iter().zip(after).map(|(a, b)| a + share * (b - a)).collect();
-        if let Some(turn) = self.turn.map(|at| at..at + 3).filter(|turn| turn.end <= between.len()) {
-            let [from, to] = [before, after].map(|values| turned(DVec3::from_slice(&values[turn.clone()])));
-            between[turn].copy_from_slice(&degrees(from.slerp(to, share)).to_array());
-        }
-        between
+/// Where among what a probe sees three values are a rotation, axis times angle (degrees).
+pub fn turn_of(what: &Quantity) -> Option<usize> {
+    // place, and then rotation
+    matches!(what, Quantity::ToolPose { .. }).then_some(3)
+}
+
+/// What is a share of the way from some values to others. Rotations, three values from `turn` on, go the shorter way
+/// round, as a step does: their numbers jump at half a turn.
+pub fn between(turn: Option<usize>, [before, after]: [&[f64]; 2], share: f64) -> Vec<f64> {
+    let mut between: Vec<f64> = before.iter().zip(after).map(|(a, b)| a + share * (b - a)).collect();
+    if let Some(turn) = turn.map(|at| at..at + 3).filter(|turn| turn.end <= between.len()) {
+        let [from, to] = [before, after].map(|values| turned(DVec3::from_slice(&values[turn.clone()])));
+        between[turn].copy_from_slice(&degrees(from.slerp(to, share)).to_array());
     }
+    between
 }
 
 /// When all tables and frames are looked through for what is due.
@@ -119,6 +133,11 @@ impl Moment {
             Moment::Rest => true,
             Moment::OnTheWay(before, now) => every.lies_between(before, now),
         }
+    }
+
+    /// Whether these rows are of times that are asked for, or of the end.
+    pub fn is_on_time(self, track: &Track) -> bool {
+        !matches!(self, Moment::Step(step, false) if track.lacks_beginning(step))
     }
 
     /// The rows that a table gets of what is there now.

@@ -48,7 +48,7 @@ pub fn command(arguments: &SweepArguments) -> Outcome {
     }
 }
 
-/// How variants ended, and the first that did not end well.
+/// How variants ended, the first that did not end well, and the first that was warned of.
 fn in_words(rows: &[Done], before: usize) -> String {
     let of = |ended: Ended| rows.iter().filter(|row| row.ended == ended).count();
     let mut parts = Vec::new();
@@ -65,10 +65,17 @@ fn in_words(rows: &[Done], before: usize) -> String {
     if before > 0 {
         parts.push(format!("{before} of them there already"));
     }
+    let warned = rows.iter().filter(|row| !row.warnings.is_empty()).count();
+    if warned > 0 {
+        parts.push(format!("{warned} of them warned of"));
+    }
     let mut text = format!("{}: {}", counted(rows.len() as u64, "variant"), parts.join(", "));
     if let Some(row) = rows.iter().find(|row| row.ended != Ended::Finished) {
         let line = row.error.as_deref().unwrap_or_default().lines().next().unwrap_or_default();
         text += &format!("\nvariant {}   {line}", row.number);
+    }
+    if let Some((row, warning)) = rows.iter().find_map(|row| Some((row, row.warnings.first()?))) {
+        text += &format!("\nvariant {}   warning: {warning}", row.number);
     }
     text
 }

@@ -34,6 +34,9 @@ fn _sinew(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<snapshot::Snapshot>()?;
     module.add_class::<picture::Picture>()?;
     module.add_class::<sweep::SweepResults>()?;
+    module.add_function(wrap_pyfunction!(sweep::check_kept, module)?)?;
+    module.add_function(wrap_pyfunction!(sweep::probes_at, module)?)?;
+    module.add_function(wrap_pyfunction!(sweep::warnings_of, module)?)?;
     module.add_function(wrap_pyfunction!(sweep::latin_hypercube_rows, module)?)?;
     module.add_function(wrap_pyfunction!(sweep::read_sweep_file, module)?)
 }

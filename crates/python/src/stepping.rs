@@ -14,7 +14,7 @@ const PIECE: Duration = Duration::from_millis(50);
 impl Simulation {
     /// Takes steps by `take`, which is given how many it may take at most and says whether there are more to come,
     /// until there are none or `count` were taken.
-    fn in_pieces(
+    pub fn in_pieces(
         &self,
         py: Python<'_>,
         mut count: u64,
@@ -55,13 +55,7 @@ impl Simulation {
         if !time.is_finite() {
             return Err(PyValueError::new_err(format!("steps cannot be taken until t = {time} s")));
         }
-        loop {
-            let advanced = self.with(py, |run| run.stepping().advance_for(PIECE, time))?;
-            if advanced.why != Ended::Budget {
-                return Ok(());
-            }
-            py.check_signals()?;
-        }
+        self.in_pieces(py, u64::MAX, |simulation, piece| simulation.advance_towards(time, piece))
     }
 
     #[pyo3(signature = (budget, until = f64::INFINITY))]

@@ -2,12 +2,12 @@
 //! same, and the files of the results.
 
 use crate::scene::Scene;
-use crate::simulation::options;
-use crate::values;
+use crate::simulation::{Simulation, options};
+use crate::{errors, values};
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt};
-use sinew_studies::sweep::{Done, Kept, Part, Results, SweepError, SweepFile, Value, Variants, key};
+use sinew_studies::sweep::{Done, Kept, Keys, Part, Results, SweepError, SweepFile, Value, Variants, warned};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -37,11 +37,11 @@ impl SweepResults {
         let (backend, precision, grabs) = how;
         let options = options(&backend, &precision, 1, grabs, true)?;
         let (mut places, mut of_rows) = (Vec::new(), Vec::new());
-        let mut keys = Vec::new();
         let names = match &keep {
             Keep::Probes(names) => names.clone(),
             Keep::Function(name) => vec![format!("{name}()")],
         };
+        let (mut of_all, mut keys) = (Keys::new(scene.file(), &names, &at, &options), Vec::new());
         for row in &table {
             let (mut own, mut sets) = (BTreeMap::new(), Vec::new());
             for (place, value) in row.iter() {
@@ -52,7 +52,7 @@ impl SweepResults {
                 }
                 own.insert(place, value);
             }
-            keys.push(key(scene.file().text(), &sets, &names, &at, &options));
+            keys.push(of_all.of(&sets, || scene.with(sets.clone())));
             of_rows.push(own);
         }
         let kept = match &keep {
@@ -122,6 +122,36 @@ fn value_of(value: &Bound<'_, PyAny>) -> PyResult<Value> {
         return Ok(Value::Number(plain.extract()?));
     }
     Ok(Value::Text(values::ron(value)?))
+}
+
+/// Whether a variant has the probes that are kept, and lasts as long as they are asked.
+#[pyfunction]
+pub fn check_kept(py: Python<'_>, scene: PyRef<'_, Scene>, names: Vec<String>, at: Vec<f64>) -> PyResult<()> {
+    let kept = Kept::of(scene.file(), &names, &at);
+    kept.map(drop).map_err(|what| errors::exception(py, "SceneError", what, PyDict::new(py)))
+}
+
+/// What probes see at the first of some ascending times (s), and at those of the others that need no further step.
+#[pyfunction]
+pub fn probes_at(
+    py: Python<'_>,
+    simulation: PyRef<'_, Simulation>,
+    names: Vec<String>,
+    times: Vec<f64>,
+) -> PyResult<Vec<Vec<Vec<f64>>>> {
+    let first = times.first().copied().unwrap_or_default();
+    simulation.in_pieces(py, u64::MAX, |simulation, piece| {
+        let before = simulation.step_count();
+        simulation.advance_short_of(first, piece)?;
+        Ok(simulation.step_count() - before == piece)
+    })?;
+    simulation.with(py, |run| run.stepping().probes_at(&names, &times))
+}
+
+/// What the guards have warned of.
+#[pyfunction]
+pub fn warnings_of(py: Python<'_>, simulation: PyRef<'_, Simulation>) -> PyResult<Vec<String>> {
+    simulation.look(py, |run| warned(&run.simulation))
 }
 
 /// Rows of a Latin hypercube: so many, with a number from low to high for each place.

@@ -34,7 +34,7 @@ def same(one: Sequence[sinew.Row], other: Sequence[sinew.Row]) -> bool:
 
     def plain(row: sinew.Row) -> tuple[object, ...]:
         places = {name: (value.dtype.str, value.shape, value.tobytes()) for name, value in row.kept.items()}
-        return (row.number, json.dumps(row.values), row.ended, row.error, row.time, places)
+        return (row.number, json.dumps(row.values), row.ended, row.error, row.time, row.warnings, places)
 
     return [plain(row) for row in one] == [plain(row) for row in other]
 
@@ -55,6 +55,26 @@ def test_probes_at_times(sagging: sinew.Scene) -> None:
     (row,) = sinew.sweep(sagging, [{YOUNG: 5000}], keep=["top", "ground"], at=[0.01, 0.02, 0.1])
     assert row.kept["top"].shape == (3, 3)
     assert row.kept["top"][0, 2] > row.kept["top"][1, 2] > row.kept["top"][2, 2]
+
+
+def test_times_within_a_step_are_met(sagging: sinew.Scene) -> None:
+    steps = {"solver": "Implicit(step: 0.01)"}
+    (row,) = sinew.sweep(sagging, [steps], keep=["top"], at=[0.01, 0.0125, 0.0175, 0.02])
+    first, *between, last = row.kept["top"]
+    assert np.allclose(between, [first + share * (last - first) for share in (0.25, 0.75)], rtol=0, atol=1e-12)
+    assert np.abs(last - first).max() > 1e-5
+
+
+def test_a_variant_that_ends_before_it_is_asked_is_a_row(sagging: sinew.Scene) -> None:
+    for keep in (["top"], kept.shape):
+        rows = sinew.sweep(sagging, [{"duration": 0.05}, {"duration": 0.01}], keep=keep, at=[0.02])
+        assert [row.ended for row in rows] == ["Finished", "SceneError"]
+        assert "0.02 s is after the scene's end, 0.01 s" in str(rows[1].error)
+
+
+def test_what_guards_warn_of_is_in_rows(sagging: sinew.Scene) -> None:
+    rows = sinew.sweep(sagging, [{"guards": "(energy: (warn: 1e-12))"}, {}], keep=["top"])
+    assert "came from nothing" in rows[0].warnings[0] and rows[1].warnings == []
 
 
 def test_a_variant_that_breaks_down_is_a_row(sagging: sinew.Scene) -> None:
@@ -85,7 +105,7 @@ def test_nothing_runs_twice(sagging: sinew.Scene, tmp_path: Path) -> None:
     sinew.sweep(sagging, table[:1], keep=["top"], out=tmp_path)
     assert len(out.read_text().splitlines()) == 9
     known = json.loads(lines[0])
-    assert {"key", "number", "values", "ended", "error", "time", "kept", "seconds"} == set(known)
+    assert {"key", "number", "values", "ended", "error", "time", "kept", "seconds", "warnings"} == set(known)
 
 
 SWEEP = """(

@@ -111,7 +111,7 @@ pub enum Quantity {
     Position,
     /// Mean velocity of the nodes (m/s), in the middle of the step that led there.
     Velocity,
-    /// What holds the nodes: the sum of internal less external forces (N).
+    /// What holds the nodes: the sum of internal less external forces (N) along axes that are fixed or moved as told.
     Reaction,
     /// The part of the reaction along a direction (N).
     Force {
@@ -133,7 +133,7 @@ pub enum Quantity {
     },
     /// Volume mean of the Cauchy stress of the elements: xx, yy, zz, xy, yz, xz (Pa).
     Stress,
-    /// Volume mean of the volume ratio J of the elements.
+    /// Volume mean of the volume ratio J of the elements that are there; 1 where none is.
     VolumeRatio,
     /// Volume at rest of the elements that have been removed (m³).
     RemovedVolume,
@@ -194,6 +194,15 @@ impl Quantity {
     pub fn is_of_contact(&self) -> bool {
         use Quantity::*;
         matches!(self, ContactForce | ContactPressure | ContactArea | ContactGap | ContactSlip)
+    }
+
+    /// Whether it is made of forces, or as long as what pulls: explicit steps show these as they were at their
+    /// beginning.
+    pub fn is_of_forces(&self) -> bool {
+        use Quantity::*;
+        let of_contact = matches!(self, ContactForce | ContactPressure | ContactArea);
+        let of_others = matches!(self, ToolForce { .. } | ToolTorque { .. });
+        self.is_of_reactions() || of_contact || of_others || self.attachment().is_some()
     }
 
     /// Whether it is of elements, not of nodes.

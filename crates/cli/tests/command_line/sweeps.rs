@@ -86,6 +86,100 @@ fn what_is_done_is_not_done_again() {
     assert!(!place.done(&["sweep", "sweep.ron", "--precision", "f64"]).contains("already"));
 }
 
+/// A sweep of the block, of one probe, `top`.
+fn sweep_of(place: &Workspace, variants: &str, at: &str) -> String {
+    let text = format!("(scene: \"block.ron\", variants: {variants}, keep: [\"top\"], at: [{at}])");
+    fs::write(place.path("sweep.ron"), text).unwrap();
+    place.done(&["sweep", "sweep.ron"])
+}
+
+/// Numbers of probes of a variant, all times one after the other.
+fn numbers(line: &str) -> Vec<f64> {
+    line.split(',').skip(4).map(|cell| cell.parse().unwrap()).collect()
+}
+
+#[test]
+fn times_within_a_step_are_met_as_by_tables() {
+    let scene = SCENE
+        .replace("duration: 0.2", "duration: 0.1, solver: Implicit(step: 0.01)")
+        .replace("every: 0.01) }", "every: 0.025), \"bar\": (what: ToolPose(tool: \"bar\"), every: 0.025) }")
+        .replace(
+            "    output:",
+            "    tools: { \"bar\": (shape: Sphere(radius: 0.01), at: (0, 0, 1), \
+             moves: [(rotation: (0, 0, 380), curve: Smooth(end: 0.06))]) },\n    output:",
+        );
+    let place = Workspace::with_scene(&scene);
+    let times = [0.025, 0.03, 0.036, 0.038, 0.04, 0.05];
+    let variants = "Grid([(\"materials.tissue.density\", [1000, 1100])])";
+    let text = format!("(scene: \"block.ron\", variants: {variants}, keep: [\"top\", \"bar\"], at: {times:?})");
+    fs::write(place.path("sweep.ron"), text).unwrap();
+    place.done(&["sweep", "sweep.ron"]);
+    let of_sweep = numbers(&table(&place, "out/sweep/rows.csv").1[&0]);
+    let at: Vec<&[f64]> = of_sweep.chunks(9).collect();
+    assert_eq!(at.len(), times.len());
+    place.done(&["run", "block.ron", "-o", "run", "--threads", "1"]);
+    let run = ["run/probe_top.csv", "run/probe_bar.csv"].map(|name| place.table(name));
+    // the bar is beyond half a turn at the end of the step in which the first of them lies
+    for (row, seen) in [(1, at[0]), (2, at[5])] {
+        assert_eq!([&run[0][row][1..], &run[1][row][1..]].concat(), seen);
+    }
+    // two times in one step
+    for (share, seen) in [(0.6, at[2]), (0.8, at[3])] {
+        for ((first, last), seen) in at[1].iter().zip(at[4]).zip(seen).take(3) {
+            assert!((first + share * (last - first) - seen).abs() < 1e-15, "{first} {seen} {last}");
+        }
+        assert!(seen[2] < at[1][2] && seen[2] > at[4][2]);
+    }
+}
+
+#[test]
+fn a_variant_that_ends_before_it_is_asked_is_a_row() {
+    let place = Workspace::with_scene(&SCENE.replace("duration: 0.2", "duration: 0.1"));
+    let told = sweep_of(&place, "Grid([(\"duration\", [0.1, 0.02])])", "0.01, 0.05");
+    assert!(told.contains("1 finished, 1 with values that make no sense"), "{told}");
+    assert!(told.contains("variant 1   at: 0.05 s is after the scene's end, 0.02 s"), "{told}");
+}
+
+#[test]
+fn what_guards_warn_of_is_kept_and_told() {
+    let place = Workspace::with_scene(&SCENE.replace("duration: 0.2", "duration: 0.1"));
+    let variants = "Grid([(\"guards.energy.warn\", [0.01, 1e-12])])";
+    for _again in 0..2 {
+        let told = sweep_of(&place, variants, "");
+        assert!(told.contains("2 variants: 2 finished") && told.contains("1 of them warned of"), "{told}");
+        assert!(told.contains("variant 1   warning: from t = 0.1 s: ") && told.contains("came from nothing"), "{told}");
+    }
+    let lines = place.read("out/sweep/manifest.jsonl");
+    let warnings = lines.lines().map(|line| {
+        let line: serde_json::Value = serde_json::from_str(line).unwrap();
+        (line["number"].as_u64().unwrap(), line["warnings"].as_array().unwrap().len())
+    });
+    assert_eq!(warnings.collect::<BTreeMap<_, _>>(), BTreeMap::from([(0, 0), (1, 1)]));
+}
+
+#[test]
+fn a_law_in_another_file_text_makes_other_rows() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    let [scene, law] = ["own_law.ron", "own_law.wgsl"].map(|name| fs::read_to_string(root.join(name)).unwrap());
+    let place = Workspace::with_scene(&scene);
+    let write = |text: &str| fs::write(place.path("own_law.wgsl"), text).unwrap();
+    write(&law);
+    let sweep = r#"(scene: "block.ron", variants: Grid([("materials.skin.density", [1100, 1200])]), keep: ["grip"],
+        at: [0.01])"#;
+    fs::write(place.path("sweep.ron"), sweep).unwrap();
+    place.done(&["sweep", "sweep.ron"]);
+    let rows = place.read("out/sweep/rows.csv");
+    assert!(place.done(&["sweep", "sweep.ron"]).contains("2 of them there already"));
+    let stiffer = law.replace("let factor = 2.0 *", "let factor = 3.0 *");
+    assert_ne!(stiffer, law);
+    write(&stiffer);
+    assert!(!place.done(&["sweep", "sweep.ron"]).contains("already"));
+    assert_ne!(place.read("out/sweep/rows.csv"), rows);
+    write(&law);
+    assert!(!place.done(&["sweep", "sweep.ron"]).contains("already"));
+    assert_eq!(place.read("out/sweep/rows.csv"), rows);
+}
+
 #[test]
 fn mistakes_are_told_before_anything_runs() {
     let place = place();

@@ -18,7 +18,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._errors import Error, NotConverged, SceneError, Unstable
-from ._sinew import Scene, Simulation, SweepResults, latin_hypercube_rows, read_sweep_file
+from ._sinew import (
+    Scene,
+    Simulation,
+    SweepResults,
+    check_kept,
+    latin_hypercube_rows,
+    probes_at,
+    read_sweep_file,
+    warnings_of,
+)
 
 Values = Mapping[str, Any]
 Keep = Sequence[str] | Callable[[Simulation], Mapping[str, Any]]
@@ -43,6 +52,8 @@ class Row:
     kept: dict[str, NDArray[Any]]
     """What was kept, by name: with `at` a first axis of times, of which a variant that ended early has fewer. What is no
     finite number is `nan`."""
+    warnings: list[str]
+    """What the guards warned of: its numbers are that uncertain."""
 
 
 class Executor(Protocol):
@@ -92,13 +103,14 @@ def sweep(
     """Runs a scene with each row of a table put in; one Row for each, in the table's order.
 
     keep: names of probes, or a function that takes a simulation and gives what is to be kept of it, by name: numbers,
-        lists or arrays. It is asked at the times of `at` (s), or once at the scene's end.
+        lists or arrays. It is asked at the times of `at` (s), or once at the scene's end: probes exactly there, what
+        lies within a step interpolated as in tables; a function at the end of the first step not before each.
     on: where: anything with `submit` whose futures are those of `concurrent.futures`, or a Dask client. Left out,
         threads of this process, one a core. A function for `keep` must be importable where processes do the work.
     out: a folder, with the files of the command `sinew sweep`: `manifest.jsonl`, a line a row, written as rows come in,
         and the table `rows.csv` of what probes saw. What stands in it is not run again, whoever ran it: a sweep that
         was cut off goes on. A line counts for the same scene text, values, times, probes (or name of the function),
-        options and version of sinew; content of mesh files is not looked at.
+        options and version of sinew, and while the files that its variant names hold the same.
     part: (3, 16) takes the third of 16 parts of the table, each 16th row; the rows' numbers stay those of the table.
     pack: rows are sent in packs of about so many seconds, `ahead` packs ahead of what has come back.
     options: those of Simulation; `threads` is 1 and `backend` "cpu" unless they say otherwise.
@@ -156,7 +168,7 @@ def _array(value: Any) -> NDArray[Any]:
 
 def _row(line: Mapping[str, Any], values: Values) -> Row:
     kept = {name: _array(value) for name, value in line["kept"].items()}
-    names = ("number", "ended", "error", "time", "seconds")
+    names = ("number", "ended", "error", "time", "seconds", "warnings")
     return Row(**{name: line[name] for name in names}, values=dict(values), kept=kept)
 
 
@@ -210,29 +222,43 @@ def _run_one(
     started = time.perf_counter()
     kept: dict[str, Any] = {}
     reached, ended, error = 0.0, "Finished", None
+    warnings: list[str] = []
     simulation = None
     try:
-        simulation = Simulation(scene.with_values(values), **options)
+        variant = scene.with_values(values)
+        # it may end before the scene as it stands does
+        check_kept(variant, [] if callable(keep) else list(keep), list(at or ()))
+        simulation = Simulation(variant, **options)
         if at is None:
             simulation.finish()
             kept = dict(_ask(keep, simulation))
-        for moment in at or ():
-            simulation.advance_to(moment)
-            for name, value in _ask(keep, simulation).items():
+        left = list(at or ())
+        while left:
+            seen = _ask_at(keep, simulation, left)
+            left = left[len(seen) :]
+            for name, value in ((name, value) for one in seen for name, value in one.items()):
                 kept.setdefault(name, []).append(value)
     except (Unstable, NotConverged, SceneError) as problem:
         # other errors say nothing of the variant
         ended, error = type(problem).__name__, str(problem)
     if simulation is not None:
         try:
-            reached = simulation.time
+            reached, warnings = simulation.time, warnings_of(simulation)
         except Error:
             pass
     seconds = time.perf_counter() - started
     # what a process hands over is what the file holds, without the values
     line = {"number": number, "ended": ended, "error": error, "time": reached, "seconds": seconds}
-    return {**line, "kept": _plain(kept)}
+    return {**line, "kept": _plain(kept), "warnings": warnings}
 
 
 def _ask(keep: Keep, simulation: Simulation) -> Mapping[str, Any]:
     return keep(simulation) if callable(keep) else {name: simulation.probe(name) for name in keep}
+
+
+def _ask_at(keep: Keep, simulation: Simulation, times: Sequence[float]) -> list[Mapping[str, Any]]:
+    """What is to be kept at the first of some times (s), and at those after it that need no further step."""
+    if callable(keep):
+        simulation.advance_to(times[0])
+        return [keep(simulation)]
+    return [dict(zip(keep, seen, strict=True)) for seen in probes_at(simulation, list(keep), list(times))]

@@ -7,13 +7,13 @@ mod manifest;
 mod rows;
 mod table;
 
-pub use manifest::{Done, Ended, key};
+pub use manifest::{Done, Ended, Keys, warned};
 pub use rows::{Kept, Results};
 pub use table::{SweepFile, Value, Variants};
 
 use serde_json::Value as Json;
 use sinew::scene::{Allowed, Diagnostics};
-use sinew::{Ended as Why, Error, Options, SceneFile, Simulation};
+use sinew::{Error, Options, SceneFile, Simulation};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -21,10 +21,8 @@ use std::sync::mpsc;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How long a variant goes on before it asks whether to stop.
+/// About how long a variant goes on before it asks whether to stop.
 const PIECE: Duration = Duration::from_millis(50);
-/// The same of one that is led to rest, in pseudo-steps.
-const PSEUDO_STEPS: u64 = 64;
 
 /// What is wrong with a sweep, or kept it from going on.
 #[derive(Debug)]
@@ -85,8 +83,8 @@ impl Part {
 pub struct Sweep {
     file: SweepFile,
     scene: PathBuf,
-    /// The scene's text, part of what makes a row the same.
-    text: String,
+    /// As it stands there.
+    base: SceneFile,
     allowed: Allowed,
     variants: Vec<Vec<Value>>,
     kept: Kept,
@@ -132,7 +130,7 @@ impl Sweep {
         let kept = Kept::of(&base, &file.keep, &file.at);
         let kept = kept.map_err(|what| SweepError::File(format!("{}: {what}", path.display())))?;
         let variants = file.variants.rows();
-        Ok(Self { text: base.text().to_owned(), scene, variants, kept, allowed, file })
+        Ok(Self { base, scene, variants, kept, allowed, file })
     }
 
     /// How many variants there are.
@@ -151,7 +149,8 @@ impl Sweep {
     /// Results that cannot be read or written; a GPU that is not there or fails. What is done is kept.
     pub fn run(&self, how: &How<'_>, mut tell: impl FnMut(&Done)) -> Result<Outcome, SweepError> {
         let SweepFile { keep, at, .. } = &self.file;
-        let keys = (0..self.count()).map(|number| key(&self.text, &self.sets(number), keep, at, &how.options));
+        let mut keys = Keys::new(&self.base, keep, at, &how.options);
+        let keys = (0..self.count()).map(|number| keys.of(&self.sets(number), || self.read(number)));
         let mut results = Results::open(how.out, how.part, keys.collect())?;
         let missing = results.missing();
         let before = results.count() - missing.len();
@@ -191,15 +190,27 @@ impl Sweep {
         places.iter().zip(&self.variants[number]).map(|(place, value)| format!("{place}={value}")).collect()
     }
 
+    /// The scene of a variant.
+    fn read(&self, number: usize) -> Result<SceneFile, Diagnostics> {
+        SceneFile::load_allowing(&self.scene, &self.sets(number), self.allowed)
+    }
+
     /// Runs a variant; `None` where it was told to stop.
     fn row(&self, number: usize, how: &How<'_>) -> Result<Option<Done>, SweepError> {
         let started = Instant::now();
         let places = self.places().into_iter().map(str::to_owned);
         let values = places.zip(self.variants[number].iter().cloned()).collect();
-        let (ended, kept) = (Ended::Finished, BTreeMap::new());
-        let mut row = Done { number, values, ended, error: None, time: 0.0, seconds: 0.0, kept };
-        let done = match SceneFile::load_allowing(&self.scene, &self.sets(number), self.allowed) {
-            Ok(scene) => self.simulate(&scene, how, &mut row),
+        let (ended, kept, warnings) = (Ended::Finished, BTreeMap::new(), Vec::new());
+        let mut row = Done { number, values, ended, error: None, time: 0.0, seconds: 0.0, kept, warnings };
+        let done = match self.read(number) {
+            // it may end before the scene as it stands does
+            Ok(scene) => match Kept::of(&scene, &self.file.keep, &self.file.at) {
+                Ok(_) => self.simulate(&scene, how, &mut row),
+                Err(what) => {
+                    (row.ended, row.error) = (Ended::SceneError, Some(what));
+                    Ok(true)
+                }
+            },
             Err(wrong) => Err(Error::Scene(Box::new(wrong))),
         };
         match done {
@@ -220,39 +231,43 @@ impl Sweep {
         let mut simulation = Simulation::new(scene, &how.options)?;
         let done = self.to_the_end(&mut simulation, how, row);
         // also where it broke down
-        row.time = simulation.time();
+        (row.time, row.warnings) = (simulation.time(), warned(&simulation));
         done
     }
 
     fn to_the_end(&self, simulation: &mut Simulation, how: &How<'_>, row: &mut Done) -> Result<bool, Error> {
-        for &time in &self.file.at {
-            loop {
-                if (how.stop)() {
-                    return Ok(false);
-                }
-                let advanced = simulation.advance_for(PIECE, time)?;
-                if advanced.why != Why::Budget {
-                    break;
-                }
+        let names: Vec<String> = self.kept.probes().iter().map(|(name, _)| name.clone()).collect();
+        if self.file.at.is_empty() {
+            let arrived = in_pieces(simulation, how, |simulation, most| {
+                simulation.advance_towards_end(most)?;
+                Ok(!simulation.is_finished())
+            })?;
+            if arrived {
+                let seen = names.iter().map(|name| simulation.probe(name)).collect::<Result<_, _>>()?;
+                self.keep(seen, row)?;
             }
-            self.ask(simulation, row)?;
+            return Ok(arrived);
         }
-        while self.file.at.is_empty() && !simulation.is_finished() {
-            if (how.stop)() {
+        let mut left = &self.file.at[..];
+        while let Some(&next) = left.first() {
+            let arrived = in_pieces(simulation, how, |simulation, most| {
+                let before = simulation.step_count();
+                simulation.advance_short_of(next, most)?;
+                Ok(simulation.step_count() - before == most)
+            })?;
+            if !arrived {
                 return Ok(false);
             }
-            simulation.advance_towards_end(PSEUDO_STEPS)?;
-        }
-        if self.file.at.is_empty() {
-            self.ask(simulation, row)?;
+            let seen = simulation.probes_at(&names, left)?;
+            left = &left[seen.len()..];
+            seen.into_iter().try_for_each(|seen| self.keep(seen, row))?;
         }
         Ok(true)
     }
 
-    /// Keeps what probes see now.
-    fn ask(&self, simulation: &mut Simulation, row: &mut Done) -> Result<(), Error> {
-        for (name, columns) in self.kept.probes() {
-            let numbers = simulation.probe(name)?;
+    /// Keeps what the probes saw, of each its numbers.
+    fn keep(&self, seen: Vec<Vec<f64>>, row: &mut Done) -> Result<(), Error> {
+        for ((name, columns), numbers) in self.kept.probes().iter().zip(seen) {
             if numbers.len() != columns.len() {
                 return Err(Error::Broken("a column of a probe"));
             }
@@ -266,4 +281,22 @@ impl Sweep {
         }
         Ok(())
     }
+}
+
+/// Takes steps by `take`, which is given how many it may take at most and says whether there are more to come. False:
+/// it was told to stop.
+fn in_pieces(
+    simulation: &mut Simulation,
+    how: &How<'_>,
+    take: impl Fn(&mut Simulation, u64) -> Result<bool, Error>,
+) -> Result<bool, Error> {
+    let mut most: u64 = 1;
+    while !(how.stop)() {
+        let started = Instant::now();
+        if !take(simulation, most)? {
+            return Ok(true);
+        }
+        most = if started.elapsed() < PIECE / 2 { most.saturating_mul(2) } else { (most / 2).max(1) };
+    }
+    Ok(false)
 }

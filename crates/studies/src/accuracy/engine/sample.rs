@@ -112,10 +112,11 @@ impl<'a> Sampler<'a> {
     /// Sees the present state, its energies and its fields if they are wanted.
     pub fn see(&mut self, simulation: &mut Simulation, [energies, fields]: [bool; 2]) -> Result<(), Refusal> {
         let (step, time) = (simulation.step_count(), simulation.time());
+        let implicit = simulation.scene().is_implicit();
         let mut sample = Sample { time, ..Sample::default() };
+        let later = |what: &Quantity| what.is_of_forces() && !implicit;
         for (name, what, _) in &self.sampling.probes {
-            let later = *what == Quantity::Reaction && !simulation.scene().is_implicit();
-            sample.probes.push(if later { Vec::new() } else { simulation.probe(name).map_err(refusal)? });
+            sample.probes.push(if later(what) { Vec::new() } else { simulation.probe(name).map_err(refusal)? });
         }
         if energies {
             let energies = simulation.energies().map_err(refusal)?;
@@ -126,16 +127,14 @@ impl<'a> Sampler<'a> {
             let all = bodies.iter().map(|body| simulation.displacements(body));
             sample.displacements = Some(all.collect::<Result<_, _>>().map_err(refusal)?);
         }
-        // reactions are made of the forces at the beginning of the step before: those of now are known one step later;
-        // those of implicit steps are of their end
-        if !simulation.scene().is_implicit()
-            && self.sampling.probes.iter().any(|(_, what, _)| *what == Quantity::Reaction)
-        {
+        // forces are those of the beginning of the step before: those of now are known one step later; those of
+        // implicit steps are of their end
+        if self.sampling.probes.iter().any(|(_, what, _)| later(what)) {
             // (in equilibrium nothing moves any more, and no step is taken)
             let seconds = timed(simulation, 1)?;
             self.seconds += if time < self.duration - MET * simulation.time_step() { seconds } else { 0.0 };
             for ((name, what, _), values) in self.sampling.probes.iter().zip(&mut sample.probes) {
-                if *what == Quantity::Reaction {
+                if later(what) {
                     *values = simulation.probe(name).map_err(refusal)?;
                 }
             }
@@ -150,5 +149,66 @@ impl<'a> Sampler<'a> {
     /// What was seen last.
     pub fn last(&mut self) -> Option<Sample> {
         self.seen.pop_back().map(|(_, sample)| sample)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use sinew::components::Precision;
+    use sinew::{Options, SceneFile};
+    use std::path::Path;
+
+    /// A plate is pressed into a block whose sides a thread draws together; half of the time is 20 steps.
+    const PRESSED: &str = r#"(
+        title: "Pressed", duration: 0.02, integration: (step: 0.0005),
+        bodies: {"cube": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2), elements: Hex8), material: "tissue")},
+        materials: {"tissue": (density: 1000, neo_hookean: Young(young: 30000, poisson: 0.3), damping: 20)},
+        constraints: [Fixed(on: Set("z0"))],
+        tools: {"plate": (shape: Box(size: (0.3, 0.3, 0.05)), at: (0.06, 0.05, 0.1251),
+            moves: [(displacement: (0, 0, -0.004), curve: Smooth(end: 0.02))])},
+        contacts: [Tool(tool: "plate")],
+        attachments: [Suture(name: "stitch", from: (at: (0, 0.05, 0.1)), to: (at: (0.1, 0.05, 0.1)), stiffness: 20,
+            length: 0.05)],
+        probes: {
+            "up": (what: Displacement, on: Set("z1")),
+            "reaction": (what: Reaction, on: Set("z0")),
+            "force": (what: Force(direction: (0, 0, 1)), on: Set("z0")),
+            "moment": (what: Moment(center: (0, 0, 1)), on: Set("z0")),
+            "torque": (what: Torque(center: (0, 0, 1), axis: (1, 0, 0)), on: Set("z0")),
+            "contact": (what: ContactForce, on: Set("z1")),
+            "pressure": (what: ContactPressure, on: Set("z1")),
+            "area": (what: ContactArea, on: Set("z1")),
+            "thread": (what: AttachmentForce(attachment: "stitch")),
+            "length": (what: SutureLength(attachment: "stitch")),
+            "plate": (what: ToolForce(tool: "plate")),
+            "turned": (what: ToolTorque(tool: "plate")),
+        },
+    )"#;
+
+    #[test]
+    fn whatever_is_of_forces_is_of_the_time_of_its_sample() {
+        let scene = SceneFile::from_text("pressed.ron", PRESSED, Path::new(""), &[]).unwrap();
+        let options = Options { precision: Precision::F64, threads: 1, ..Options::default() };
+        let probes = scene.scene.probes.iter();
+        let probes = probes.map(|(name, probe)| (name.clone(), probe.what.clone(), Vec::new())).collect();
+        let sampling = Sampling { count: 10, probes };
+        let mut simulation = Simulation::new(&scene, &options).unwrap();
+        let mut sampler = Sampler::new(&sampling, scene.scene.duration);
+        let mut advance = |simulation: &mut Simulation, time: f64, _: f64| {
+            simulation.advance_short_of(time, u64::MAX).map(|()| 0.0).map_err(refusal)
+        };
+        let sample = sampler.at(&mut simulation, 5, &mut advance).unwrap();
+        let mut by_hand = Simulation::new(&scene, &options).unwrap();
+        by_hand.advance_to(0.01).unwrap();
+        let at_once = sampling.probes.iter().map(|(name, ..)| by_hand.probe(name).unwrap()).collect::<Vec<_>>();
+        by_hand.step().unwrap();
+        for (((name, what, _), seen), at_once) in sampling.probes.iter().zip(&sample.probes).zip(at_once) {
+            let later = by_hand.probe(name).unwrap();
+            assert_ne!(later, at_once, "{name} tells the times apart");
+            assert_eq!(*seen, if *what == Quantity::Displacement { at_once } else { later }, "{name}");
+        }
     }
 }
