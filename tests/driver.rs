@@ -141,6 +141,25 @@ fn a_state_that_was_kept_elsewhere_is_gone_on_from() {
     assert_eq!((state.refusal.map(|refusal| refusal.command), state.step), (Some("restore"), 0));
 }
 
+/// Another state at the same step: of another run, and of other material.
+#[test]
+fn what_is_measured_is_of_the_state_that_is_seen() {
+    let (mut one, mut other) = (session(FALL), session(FALL));
+    one.command(Command::Step(40));
+    other.command(Command::Input { name: "weight".into(), value: -3.0 });
+    other.command(Command::Step(40));
+    let (seen, wanted) = (other.state(), one.state());
+    assert!(seen.step == wanted.step && seen.probes != wanted.probes && seen.energies != wanted.energies);
+    let kept = one.simulation().unwrap().snapshot().unwrap();
+    other.command(Command::Restore(Box::new(kept)));
+    let restored = other.state();
+    assert_eq!((restored.probes, restored.energies), (wanted.probes, wanted.energies));
+    other.command(Command::Set(vec!["materials.m.neo_hookean=Young(young: 6000, poisson: 0.45)".into()]));
+    let told = other.state();
+    assert_eq!(told.refusal.map(|refusal| refusal.reason), None);
+    assert_eq!(told.energies, other.simulation().unwrap().energies().unwrap());
+}
+
 #[test]
 fn time_goes_as_fast_as_on_the_wall_or_as_asked() {
     let mut session = session(FALL);
@@ -337,6 +356,30 @@ fn a_hand_pulls_until_it_lets_go_and_its_work_is_in_the_balance() {
     // a hand beside the body holds nothing
     session.command(Command::Grab { hand: 2, origin: DVec3::new(5.0, 5.0, 1.0), direction: DVec3::NEG_Z });
     assert!(session.state().held.is_empty() && session.state().refusal.is_none());
+}
+
+#[test]
+fn a_point_that_was_picked_elsewhere_is_told_and_held_as_one_that_a_ray_meets() {
+    let mut session = session(FALL);
+    session.command(Command::Pick { origin: DVec3::new(0.05, 0.05, 1.0), direction: DVec3::NEG_Z });
+    let picked = session.state().picked.expect("the upper side");
+    session.command(Command::PickAt(None));
+    assert_eq!(session.state().picked, None);
+    session.command(Command::PickAt(Some(Box::new(picked.pick.clone()))));
+    assert_eq!(session.state().picked.as_ref(), Some(&picked));
+    session.command(Command::GrabAt { hand: 3, pick: Box::new(picked.pick.clone()) });
+    let state = session.state();
+    assert!(state.held.len() == 1 && state.held[0].hand == 3, "{:?}", state.refusal);
+    assert!(state.held[0].point.distance(picked.pick.point) < 1e-6);
+    // a node that there is not, and a body
+    let wrong = sinew::Pick { nodes: [9999; 3], ..picked.pick.clone() };
+    session.command(Command::PickAt(Some(Box::new(wrong.clone()))));
+    assert_eq!(session.state().picked, None);
+    session.command(Command::GrabAt { hand: 3, pick: Box::new(wrong) });
+    assert_eq!(session.state().refusal.map(|told| told.command), Some("grab"));
+    let nobody = sinew::Pick { body: "nobody".into(), ..picked.pick };
+    session.command(Command::PickAt(Some(Box::new(nobody))));
+    assert!(session.state().refusal.is_some_and(|told| told.command == "pick" && told.reason.contains("nobody")));
 }
 
 #[test]

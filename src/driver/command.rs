@@ -1,7 +1,7 @@
 //! What can be asked of a simulation while it runs.
 
 use crate::scene::schema::OutputField;
-use crate::{SceneFile, Snapshot};
+use crate::{Pick, SceneFile, Snapshot};
 use glam::DVec3;
 
 /// What can be asked of a [`Session`](super::Session).
@@ -39,6 +39,13 @@ pub enum Command {
         /// Where it goes.
         direction: DVec3,
     },
+    /// Take hold of a point that was picked elsewhere, as among what is drawn, with a hand; what that held is let go.
+    GrabAt {
+        /// The hand.
+        hand: u32,
+        /// The point: its body, nodes and weights count.
+        pick: Box<Pick>,
+    },
     /// Move what a hand pulls towards to a place (m).
     MoveGrab {
         /// The hand.
@@ -58,6 +65,8 @@ pub enum Command {
         /// Where it goes.
         direction: DVec3,
     },
+    /// Say what lies at a point that was picked elsewhere; forget what was asked before where there is none.
+    PickAt(Option<Box<Pick>>),
     /// Which field states have values of; none at first.
     Field(Option<OutputField>),
     /// Which field of vectors of nodes states have for arrows; none at first.

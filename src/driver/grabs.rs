@@ -19,10 +19,17 @@ impl Hands {
     /// Takes hold of what a ray meets.
     pub fn grab(&mut self, hand: u32, ray: (DVec3, DVec3), simulation: &mut Simulation) -> Result<(), Error> {
         self.release(hand, simulation)?;
-        if let Some(pick) = simulation.pick(ray.0, ray.1)? {
-            let id = simulation.grab(&pick, &Grip::default())?;
-            self.0.insert(hand, (id, pick));
+        match simulation.pick(ray.0, ray.1)? {
+            Some(pick) => self.take(hand, pick, simulation),
+            None => Ok(()),
         }
+    }
+
+    /// Takes hold of a point that was picked.
+    pub fn take(&mut self, hand: u32, pick: Pick, simulation: &mut Simulation) -> Result<(), Error> {
+        self.release(hand, simulation)?;
+        let id = simulation.grab(&pick, &Grip::default())?;
+        self.0.insert(hand, (id, pick));
         Ok(())
     }
 

@@ -75,6 +75,11 @@ impl Look {
         Ok(())
     }
 
+    /// Forgets what was measured: the state has become another one, perhaps at the same step.
+    pub fn measure_anew(&mut self) {
+        self.measured.at = None;
+    }
+
     /// Puts what is seen into a state.
     pub fn at(
         &mut self,

@@ -8,8 +8,7 @@ use super::state::{Picked, Refusal, State};
 use crate::assembly::element_step;
 use crate::components::{Authoring, Block, Label};
 use crate::error::Error;
-use crate::{Ended, Options, SceneFile, Simulation, Snapshot};
-use glam::DVec3;
+use crate::{Ended, Options, Pick, SceneFile, Simulation, Snapshot};
 use std::time::Duration;
 
 /// States to go back to are kept so often in the time of a scene, in so many bytes at most.
@@ -189,10 +188,19 @@ impl Session {
                 self.stand()?;
             }
             Command::Restore(snapshot) => self.restore(&snapshot)?,
-            Command::Set(sets) => run.simulation.change(&sets)?,
+            Command::Set(sets) => {
+                run.simulation.change(&sets)?;
+                self.look.measure_anew();
+            }
             Command::Input { name, value } => run.simulation.set_input(&name, value)?,
-            Command::Grab { hand, origin, direction } => {
-                run.hands.grab(hand, (origin, direction), &mut run.simulation)?;
+            Command::Grab { .. } | Command::GrabAt { .. } => {
+                match command {
+                    Command::Grab { hand, origin, direction } => {
+                        run.hands.grab(hand, (origin, direction), &mut run.simulation)?;
+                    }
+                    Command::GrabAt { hand, pick } => run.hands.take(hand, *pick, &mut run.simulation)?,
+                    _ => {}
+                }
                 if run.is_over() && run.goes_on_in_hands() {
                     self.running = true;
                     self.pace.stand(run.simulation.time());
@@ -200,7 +208,11 @@ impl Session {
             }
             Command::MoveGrab { hand, target } => run.hands.move_to(hand, target, &mut run.simulation)?,
             Command::Release { hand } => run.hands.release(hand, &mut run.simulation)?,
-            Command::Pick { origin, direction } => run.picked = picked(&mut run.simulation, origin, direction)?,
+            Command::Pick { origin, direction } => {
+                let pick = run.simulation.pick(origin, direction)?;
+                run.picked = picked(&mut run.simulation, pick)?;
+            }
+            Command::PickAt(pick) => run.picked = picked(&mut run.simulation, pick.map(|pick| *pick))?,
             Command::Load(_) | Command::Speed(_) | Command::Field(_) | Command::Arrows(_) | Command::Lend(_) => {}
         }
         Ok(())
@@ -225,6 +237,7 @@ impl Session {
         let Some(run) = &mut self.run else { return Ok(()) };
         run.hands.all_open(&mut run.simulation)?;
         (run.beyond, run.picked) = (false, None);
+        self.look.measure_anew();
         self.pace.stand(run.simulation.time());
         Ok(())
     }
@@ -263,8 +276,8 @@ fn name_of(command: &Command) -> &'static str {
         Command::Restore(_) => "restore",
         Command::Set(_) => "set",
         Command::Input { .. } => "input",
-        Command::Grab { .. } | Command::MoveGrab { .. } | Command::Release { .. } => "grab",
-        Command::Pick { .. } => "pick",
+        Command::Grab { .. } | Command::GrabAt { .. } | Command::MoveGrab { .. } | Command::Release { .. } => "grab",
+        Command::Pick { .. } | Command::PickAt(_) => "pick",
         Command::Field(_) => "field",
         Command::Arrows(_) => "arrows",
         Command::Lend(_) => "lend",
@@ -272,14 +285,15 @@ fn name_of(command: &Command) -> &'static str {
     }
 }
 
-/// What a ray meets, and whose that is.
-fn picked(simulation: &mut Simulation, origin: DVec3, direction: DVec3) -> Result<Option<Picked>, Error> {
-    let Some(pick) = simulation.pick(origin, direction)? else { return Ok(None) };
+/// What was picked, and whose that is; nothing of a body that has no such node.
+fn picked(simulation: &mut Simulation, pick: Option<Pick>) -> Result<Option<Picked>, Error> {
+    let Some(pick) = pick else { return Ok(None) };
     let heaviest = (0..3).max_by(|&a, &b| pick.weights[a].total_cmp(&pick.weights[b])).unwrap_or(0);
     let node = pick.nodes[heaviest];
     let body = simulation.body(&pick.body)?;
     let world = simulation.world();
-    let Some(authoring) = world.get::<Authoring>(body) else { return Ok(None) };
+    let authoring = world.get::<Authoring>(body).filter(|authoring| (node as usize) < authoring.node_rows.len());
+    let Some(authoring) = authoring else { return Ok(None) };
     let element = (0..authoring.cells.len()).find(|place| authoring.element_ids.of(*place) == pick.element);
     let at = element.and_then(|place| {
         let (block, row) = *authoring.element_rows.get(place)?;

@@ -34,7 +34,8 @@ pub struct State {
     pub finished: bool,
     /// Simulated seconds a second on the wall that are wanted.
     pub speed: f64,
-    /// The same as they were over about the last second; none while it stands.
+    /// The same as they were over about the last second, above 1 where it is faster than life (in a
+    /// [`Summary`](crate::Summary) it is the other way round); none while it stands.
     pub real_time_factor: Option<f64>,
     /// Times of the states that can be gone back to (s), the oldest first; the start is one more.
     pub history: Vec<f64>,

@@ -11,6 +11,7 @@ use crate::output::{Array, Frame, Series, SurfaceFrame, Values, write_surface};
 use crate::skins::{Carrier, Skin, normals};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+use std::path::Path;
 
 /// A skin at one moment.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -80,6 +81,20 @@ pub fn with_skins(world: &World) -> Vec<(Entity, String)> {
     let mut all: Vec<_> = named.filter_map(|e| Some((e.id(), e.get::<Label>()?.0.clone()))).collect();
     all.sort_by(|a, b| a.1.cmp(&b.1));
     all
+}
+
+/// Writes the skins of all bodies that have one, as they are now, into a folder, each as a series of its own: what
+/// pictures show of them beside fields.
+///
+/// # Errors
+/// What the GPU says; files that cannot be written.
+pub fn write_skins(world: &mut World, folder: &Path) -> Result<(), Error> {
+    for (number, (body, _)) in with_skins(world).into_iter().enumerate() {
+        // what a body is called need not be the name of a file
+        let mut series = Series::named(folder, &format!("skin_{number}"))?;
+        write(world, body, &mut series)?;
+    }
+    Ok(())
 }
 
 /// Writes a body's skin as the next frame of its series, and in the other format that the scene asks for.

@@ -33,6 +33,25 @@ pub struct Pick {
     pub distance: f64,
 }
 
+impl Pick {
+    /// How far along a ray, of a direction of length 1, a triangle is met (m), from either side, and the weights of its
+    /// corners there.
+    pub fn meet(origin: DVec3, along: DVec3, [a, b, c]: [DVec3; 3]) -> Option<(f64, [f64; 3])> {
+        let (ab, ac) = (b - a, c - a);
+        let p = along.cross(ac);
+        // six times the volume that the ray spans with both edges: 0 where it runs beside the triangle
+        let volume = ab.dot(p);
+        let from = origin - a;
+        let q = from.cross(ab);
+        let (v, w) = (from.dot(p) / volume, along.dot(q) / volume);
+        let weights = [1.0 - v - w, v, w];
+        let distance = ac.dot(q) / volume;
+        // what is no number is not met
+        let met = weights.iter().all(|weight| *weight >= -ROUNDING) && distance >= 0.0 && distance.is_finite();
+        met.then_some((distance, weights))
+    }
+}
+
 /// A triangle of a surface.
 #[derive(Clone, Copy, Debug)]
 struct Triangle {
@@ -94,7 +113,7 @@ impl Simulation {
         let mut nearest: Option<(f64, [f64; 3], Triangle)> = None;
         for &triangle in &surface.triangles {
             let most = nearest.as_ref().map_or(within, |found| found.0);
-            if let Some((distance, weights)) = meet(origin, along, triangle.nodes.map(place))
+            if let Some((distance, weights)) = Pick::meet(origin, along, triangle.nodes.map(place))
                 && distance < most
             {
                 nearest = Some((distance, weights, triangle));
@@ -135,22 +154,6 @@ impl Simulation {
 
 /// Surfaces by body, as they were when somebody picked.
 pub(super) type Surfaces = BTreeMap<Entity, Surface>;
-
-/// How far along a ray a triangle is met (m), from either side, and the weights of its corners there.
-fn meet(origin: DVec3, along: DVec3, [a, b, c]: [DVec3; 3]) -> Option<(f64, [f64; 3])> {
-    let (ab, ac) = (b - a, c - a);
-    let p = along.cross(ac);
-    // six times the volume that the ray spans with both edges: 0 where it runs beside the triangle
-    let volume = ab.dot(p);
-    let from = origin - a;
-    let q = from.cross(ab);
-    let (v, w) = (from.dot(p) / volume, along.dot(q) / volume);
-    let weights = [1.0 - v - w, v, w];
-    let distance = ac.dot(q) / volume;
-    // what is no number is not met
-    let met = weights.iter().all(|weight| *weight >= -ROUNDING) && distance >= 0.0 && distance.is_finite();
-    met.then_some((distance, weights))
-}
 
 #[cfg(test)]
 mod tests;

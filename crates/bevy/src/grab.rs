@@ -4,13 +4,15 @@ use crate::simulation::*;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_transform::components::GlobalTransform;
+use sinew::glam::DVec3;
 use sinew::{Error, GrabId, Grip, Pick};
 
 /// Why a hand holds nothing any more.
 const ANEW: &str = "the scene has started anew since this was grabbed: pick and grab again";
 
-/// A hand: spawn it to grab a point, change its target to pull, despawn it to let go. Where its scene starts anew it
-/// holds nothing any more, and is despawned with a [`Refused`].
+/// A hand: spawn it to grab a point, change its target to pull, despawn it or remove this to let go; put in anew, it
+/// lets go and grabs what was picked then. Where its scene starts anew it holds nothing any more, and is despawned with
+/// a [`Refused`].
 ///
 /// ```ignore
 /// if let Some(pick) = simulation.pick_from(ray, place)? {
@@ -46,7 +48,8 @@ pub(crate) struct Held {
     /// The run that has it: in another one the number may be that of another hand.
     run: (u64, u64),
     scene: Entity,
-    target: Vec3,
+    /// Where it is pulled to, in the scene (m): also other than before where the scene is moved and the hand is not.
+    target: DVec3,
 }
 
 /// Grabs what is to be held, and moves what is held.
@@ -61,13 +64,13 @@ pub(crate) fn hold(
         let target = in_scene(place, grab.target);
         let moved = match held {
             Some(held) if held.run != simulation.run => Err(Error::Options(ANEW.into())),
-            Some(held) if held.target == grab.target => Ok(()),
+            Some(held) if held.target == target => Ok(()),
             Some(mut held) => {
-                held.target = grab.target;
+                held.target = target;
                 simulation.move_grab(held.id, target)
             }
             None => simulation.grab(&grab.pick, &grab.grip).and_then(|id| {
-                commands.entity(hand).insert(Held { id, run: simulation.run, scene: grab.scene, target: grab.target });
+                commands.entity(hand).insert(Held { id, run: simulation.run, scene: grab.scene, target });
                 simulation.move_grab(id, target)
             }),
         };
@@ -92,6 +95,11 @@ pub(crate) fn feel(
             grab.bypass_change_detection().force = place.rotation() * force.as_vec3();
         }
     }
+}
+
+/// A hand that is no hand any more, or another one, holds nothing.
+pub(crate) fn open(gone: On<Discard<SoftGrab>>, mut commands: Commands) {
+    commands.entity(gone.entity).try_remove::<Held>();
 }
 
 /// Lets go when a hand goes.

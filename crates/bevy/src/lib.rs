@@ -63,6 +63,7 @@ impl Plugin for SinewPlugin {
             .add_message::<Refused>()
             .add_message::<ElementsRemoved>()
             .add_message::<FellBehind>()
+            .add_observer(grab::open)
             .add_observer(grab::let_go)
             .configure_sets(FixedPostUpdate, (SinewSystems::Inputs, SinewSystems::Step).chain())
             .configure_sets(PostUpdate, SinewSystems::WriteMeshes.before(AssetEventSystems))

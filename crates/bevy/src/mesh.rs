@@ -78,13 +78,15 @@ impl BodyShape {
         }
     }
 
-    /// Goes on to the body as it is now; whether elements have gone or come back.
-    pub fn update(&mut self, simulation: &mut Simulation, body: &str) -> Result<bool, Error> {
+    /// Goes on to the body as it is now; whether elements have gone or come back. `anew`: no steps have led there. Then
+    /// it was nowhere else before, and others may be left that are as many.
+    pub fn update(&mut self, simulation: &mut Simulation, body: &str, anew: bool) -> Result<bool, Error> {
         let left = simulation.elements_left(body)?;
         let others = left != self.left;
-        let Points { places, triangles, .. } = Points::of(simulation, body, self.of_skin, others)?;
-        self.before = std::mem::replace(&mut self.now, places);
-        if others {
+        let Points { places, triangles, .. } = Points::of(simulation, body, self.of_skin, others || anew)?;
+        self.before = if anew { places.clone() } else { std::mem::take(&mut self.now) };
+        self.now = places;
+        if others || anew {
             self.left = left;
             self.take_triangles(&triangles);
             self.new_triangles = true;
@@ -125,13 +127,13 @@ impl BodyShape {
         let _ = mesh.try_insert_attribute(Mesh::ATTRIBUTE_NORMAL, normals);
     }
 
-    /// The mesh.
-    pub fn mesh(&self) -> Mesh {
-        let positions: Vec<[f32; 3]> = self.vertices(1.0).collect();
+    /// The mesh at a share of the way between the last two ticks.
+    pub fn mesh(&self, share: f32) -> Mesh {
+        let positions: Vec<[f32; 3]> = self.vertices(share).collect();
         let mut mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
             .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
             .with_inserted_indices(Indices::U32(self.triangles.clone()));
-        self.set_normals(&mut mesh, 1.0);
+        self.set_normals(&mut mesh, share);
         let texture: Vec<[f32; 2]> = self.nodes.iter().filter_map(|&n| self.texture.get(n as usize).copied()).collect();
         if !self.texture.is_empty() && texture.len() == self.nodes.len() {
             mesh.insert_attribute(Mesh::ATTRIBUTE_UV_0, texture);
@@ -144,13 +146,13 @@ impl BodyShape {
         match mesh.try_attribute_mut(Mesh::ATTRIBUTE_POSITION) {
             Ok(VertexAttributeValues::Float32x3(places)) if !self.new_triangles && places.len() == self.nodes.len() => {
                 places.iter_mut().zip(self.vertices(share)).for_each(|(place, vertex)| *place = vertex);
+                self.set_normals(mesh, share);
             }
             _ => {
-                *mesh = self.mesh();
+                *mesh = self.mesh(share);
                 self.new_triangles = false;
             }
         }
-        self.set_normals(mesh, share);
         self.at_rest = self.before == self.now;
     }
 }
@@ -190,5 +192,47 @@ pub(crate) fn write_meshes(
     for (mut shape, handle) in bodies.iter_mut().filter(|(shape, _)| !shape.at_rest) {
         let Some(mut mesh) = meshes.get_mut(&handle.0) else { continue };
         shape.write(&mut mesh, share);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::SceneText;
+    use sinew::{BackendChoice, Options};
+
+    /// A cube that falls, and loses elements at 0.05 s.
+    const CUBE: &str = r#"(
+        duration: 1,
+        bodies: {"cube": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2), elements: Hex8), material: "gel")},
+        materials: {"gel": (density: 1000, neo_hookean: Young(young: 20000, poisson: 0.4))},
+        loads: [Gravity(acceleration: (0, 0, -9.81))],
+        removal: [(on: Sphere(center: (0.1, 0.1, 0.1), radius: 0.09), when: At(0.05))],
+    )"#;
+
+    #[test]
+    fn a_mesh_that_loses_triangles_or_is_made_anew_is_between_two_ticks_like_others() {
+        let scene = SceneText::new("cube", CUBE).read(&[]).unwrap();
+        let options = Options { backend: BackendChoice::Cpu, threads: 1, grabs: true, ..Options::default() };
+        let mut simulation = Simulation::new(&scene, &options).unwrap();
+        let mut shape = BodyShape::of(&mut simulation, "cube").unwrap();
+        let mut mesh = shape.mesh(1.0);
+        let at = |mesh: &Mesh| match mesh.attribute(Mesh::ATTRIBUTE_POSITION) {
+            Some(VertexAttributeValues::Float32x3(places)) => places.clone(),
+            _ => Vec::new(),
+        };
+        simulation.advance_to(0.04).unwrap();
+        assert!(!shape.update(&mut simulation, "cube", false).unwrap());
+        simulation.advance_to(0.06).unwrap();
+        assert!(shape.update(&mut simulation, "cube", false).unwrap(), "elements have gone");
+        shape.write(&mut mesh, 0.25);
+        assert_eq!(at(&mesh), shape.vertices(0.25).collect::<Vec<_>>());
+        assert!(at(&mesh) != shape.vertices(1.0).collect::<Vec<_>>());
+        // without steps between there is nothing on the way, and triangles are asked for again
+        simulation.reset().unwrap();
+        assert!(shape.update(&mut simulation, "cube", true).unwrap(), "they have come back");
+        assert!(!shape.update(&mut simulation, "cube", true).unwrap() && shape.new_triangles);
+        assert!(shape.before == shape.now);
     }
 }

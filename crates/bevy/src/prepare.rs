@@ -47,7 +47,7 @@ pub(crate) fn prepare(
                     commands.entity(*child).despawn();
                 }
                 for (name, shape) in shapes {
-                    let mesh = shape.mesh();
+                    let mesh = shape.mesh(1.0);
                     // what is there keeps its material
                     if let Some((child, _, handle)) = there.iter().find(|(_, other, _)| *other == name) {
                         // a mesh that is not there any more is nobody's

@@ -91,7 +91,9 @@ async fn files_beside(context: &mut LoadContext<'_>, text: &str) -> BTreeMap<Str
             let Ok(bytes) = context.read_asset_bytes(path).await else { continue };
             if let (true, Ok(text)) = (name.ends_with(".ron") || name.ends_with(".gltf"), str::from_utf8(&bytes)) {
                 let folder = name.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
-                texts.push((folder, text.to_string()));
+                // where glTF names files, spaces are written so
+                let text = if name.ends_with(".gltf") { text.replace("%20", " ") } else { text.to_string() };
+                texts.push((folder, text));
             }
             files.insert(name, bytes);
         }
@@ -109,11 +111,9 @@ fn file_names(text: &str) -> Vec<&str> {
         if quoted {
             let Some((inside, after)) = after.split_once('"') else { break };
             rest = after;
-            if inside
-                .rsplit_once('.')
-                .is_some_and(|(stem, end)| !stem.is_empty() && !end.is_empty() && !end.contains('/'))
-                && !inside.contains(['\n', ' '])
-            {
+            let is_ending = |end: &str| !end.is_empty() && end.chars().all(char::is_alphanumeric);
+            let named = inside.rsplit_once('.').is_some_and(|(stem, end)| !stem.is_empty() && is_ending(end));
+            if named && !inside.contains('\n') {
                 names.push(inside);
             }
         } else if after.starts_with('/') {
@@ -145,6 +145,7 @@ mod tests {
         let text = r#"(title: "A lens. Cut", // "no.msh"
             bodies: {"lens": (mesh: File(path: "meshes/lens.msh"))}, parts: {"tip": (scene: "tools/tip.ron")})"#;
         assert_eq!(file_names(text), ["meshes/lens.msh", "tools/tip.ron"]);
+        assert_eq!(file_names(r#"(path: "my meshes/the lens.msh", title: "One. Two")"#), ["my meshes/the lens.msh"]);
         assert_eq!(file_names("\"a.msh"), [""; 0]);
         assert_eq!(shortest("tools/../meshes/./lens.msh"), "meshes/lens.msh");
     }

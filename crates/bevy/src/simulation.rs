@@ -50,12 +50,20 @@ pub struct SoftSimulation {
     pub(crate) broken: bool,
     /// Which run it is: how many simulations the app had made by then, and how often this one has begun anew since.
     pub(crate) run: (u64, u64),
+    /// How often it had been restored when it was looked at last: what is drawn and told is of that.
+    seen: Option<u64>,
 }
 
 impl SoftSimulation {
     /// The simulation that an app has made as its first, second ...
     pub(crate) fn new(simulation: Simulation, number: u64) -> Self {
-        Self { simulation, ahead: 0.0, fresh: true, broken: false, run: (number, 0) }
+        Self { simulation, ahead: 0.0, fresh: true, broken: false, run: (number, 0), seen: None }
+    }
+
+    /// Whether it is in another state than by steps from where it was looked at last; it is looked at now.
+    pub(crate) fn has_gone_over(&mut self) -> bool {
+        let now = Some(self.simulation.times_restored());
+        std::mem::replace(&mut self.seen, now) != now
     }
 
     /// Whether it broke down: it stands still until [`restart`](Self::restart).
@@ -125,8 +133,8 @@ pub struct SinewClock {
     pub paused: bool,
     /// Simulated seconds a second of `Time<Fixed>`.
     pub speed: f64,
-    /// What a tick of a scene may take on the clock on the wall. What does not fit is left out and not caught up: see
-    /// [`FellBehind`].
+    /// What a tick may take on the clock on the wall, shared alike by the scenes that move. What does not fit is left
+    /// out and not caught up: see [`FellBehind`].
     pub budget: Duration,
 }
 

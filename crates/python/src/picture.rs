@@ -5,7 +5,7 @@ use crate::{errors, values};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use sinew::observation::write_fields;
+use sinew::observation::{write_fields, write_skins};
 use sinew::output::Series;
 use sinew::scene::validate_picture;
 use sinew_pictures::render::{RenderOptions, draw};
@@ -60,7 +60,7 @@ impl Simulation {
             run.simulation.settle()?;
             let mut series = Series::named(folder.path(), "fields")?;
             write_fields(run.simulation.world_mut(), &mut series)?;
-            Ok(())
+            write_skins(run.simulation.world_mut(), folder.path())
         })?;
         let png = folder.path().join("picture.png");
         let options = RenderOptions { field: array, ..RenderOptions::new(how, png.clone()) };

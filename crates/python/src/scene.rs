@@ -88,6 +88,28 @@ impl Scene {
         Self::make(py, from, values::sets(set)?, allow_outside)
     }
 
+    /// One of what `__reduce__` tells: values in the order in which they were put in, a place as often as it was.
+    #[classmethod]
+    #[pyo3(signature = (name, text, path, files, sets, allow_outside))]
+    fn _made_of(
+        _class: &Bound<'_, PyType>,
+        py: Python<'_>,
+        name: Option<String>,
+        text: Option<String>,
+        path: Option<PathBuf>,
+        files: Option<BTreeMap<String, Bound<'_, PyAny>>>,
+        sets: Vec<String>,
+        allow_outside: bool,
+    ) -> PyResult<Self> {
+        let path = path.unwrap_or_default();
+        let from = match (name, text, files) {
+            (Some(name), Some(text), Some(files)) => From::Memory { name, text, files: contents(files)? },
+            (Some(name), Some(text), None) => From::Text { name, text, folder: path },
+            _ => From::File(path),
+        };
+        Self::make(py, from, sets, allow_outside)
+    }
+
     fn with_values(&self, py: Python<'_>, set: &Bound<'_, PyDict>) -> PyResult<Self> {
         let sets = [self.sets.clone(), values::sets(Some(set))?].concat();
         Self::make(py, self.from.clone(), sets, self.allow_outside)

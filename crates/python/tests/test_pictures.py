@@ -14,6 +14,8 @@ import sinew
 import sinew.rerun
 import sinew.usd
 
+from conftest import BLOCK
+
 
 def size(png: bytes) -> tuple[int, int]:
     assert png[:8] == b"\x89PNG\r\n\x1a\n"
@@ -37,6 +39,29 @@ def test_a_picture_shows_the_present_state(simulation: sinew.Simulation, tmp_pat
         simulation.picture(zoom=-1)
     with pytest.raises(ValueError, match="nothing"):
         simulation.picture("nothing")
+
+
+# a face in the middle of the block, which is far from filling it
+SKIN = b"v 0.04 0.04 0.05\nv 0.06 0.04 0.05\nv 0.05 0.06 0.05\nf 1 2 3\n"
+
+
+def test_of_a_body_with_a_skin_that_is_drawn() -> None:
+    with_skin = BLOCK.replace('material: "tissue")', 'material: "tissue", skin: (file: "skin.obj"))')
+    pictures = []
+    for text, files in [(BLOCK, {}), (with_skin, {"skin.obj": SKIN})]:
+        scene = sinew.Scene.from_text(text, files=files)
+        simulation = sinew.Simulation(scene, backend="cpu", threads=1)
+        pictures.append(simulation.picture(size=(160, 120), from_=(1, -2, 0.6)).png)
+    assert pictures[0] != pictures[1]
+
+
+def test_usd_has_a_state_once(simulation: sinew.Simulation, tmp_path: Path) -> None:
+    path = tmp_path / "block.usda"
+    simulation.step(2)
+    now = simulation.time
+    sinew.usd.write(simulation, path, [0.0, 0.5 * now, now + 0.02, now + 0.02])
+    points = path.read_text().split("points.timeSamples = {")[1].split("}")[0]
+    assert points.count(": [") == 2
 
 
 def test_usd_text_holds_the_moving_surface(simulation: sinew.Simulation, tmp_path: Path) -> None:

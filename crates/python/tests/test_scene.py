@@ -88,6 +88,14 @@ def test_scenes_travel_as_pickles(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         assert (again.text, again.duration) == (scene.text, 0.25)
 
 
+def test_a_place_that_is_set_twice_travels_in_its_order() -> None:
+    scene = sinew.Scene.from_text(BLOCK, {"bodies.block.mesh": "Box(size: (0.1, 0.1, 0.2), cells: (2, 2, 4))"})
+    scene = scene.with_values({"bodies.block.mesh.cells": (5, 5, 5)})
+    scene = scene.with_values({"bodies.block.mesh": "Box(size: (0.2, 0.1, 0.1), cells: (4, 2, 2))"})
+    again: sinew.Scene = pickle.loads(pickle.dumps(scene))
+    assert "cells: (4, 2, 2)" in again.text and again.text == scene.text
+
+
 def test_warnings_are_told() -> None:
     shock = BLOCK.replace("loads:", 'constraints: [],\n loads:').replace(
         'constraints: [Fixed(on: Set("z0"))],\n',

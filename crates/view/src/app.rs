@@ -325,7 +325,8 @@ impl App {
             painter.image(picture.texture, rect, whole, Color32::WHITE);
         }
         let colour = ui.visuals().strong_text_color();
-        Marks { painter: &painter, frame, camera: &camera, colour }.draw(&self.state, &self.settings, &drawn);
+        let held = if let Some(Drag::Grab(grip)) = self.drag { grip.map(|grip| grip.rest) } else { None };
+        Marks { painter: &painter, frame, camera: &camera, colour, held }.draw(&self.state, &self.settings, &drawn);
         drop(drawn);
         if std::mem::take(&mut self.wants_picture) {
             self.write_picture();

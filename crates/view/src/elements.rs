@@ -13,6 +13,8 @@ pub struct Found<'a> {
     pub body: &'a Body,
     /// Its place in the author's order.
     pub element: usize,
+    /// Its middle at rest (m).
+    pub rest: Vec3,
     /// Its middle (m), now, or at rest where it is no longer anywhere.
     pub place: Vec3,
     /// Of its body at rest (m).
@@ -34,7 +36,8 @@ pub fn find<'a>(state: &'a State, name: &str, wanted: u64) -> Option<Found<'a>> 
     body.rest.iter().for_each(|place| extent.add(Vec3::from_array(*place)));
     // where it is no longer anywhere, it was
     let there = Some(mean(&now.positions)).filter(|place| extent.grown(0.5).has(*place));
-    Some(Found { body, element, place: there.unwrap_or_else(|| mean(&body.rest)), diagonal: extent.diagonal() })
+    let rest = mean(&body.rest);
+    Some(Found { body, element, rest, place: there.unwrap_or(rest), diagonal: extent.diagonal() })
 }
 
 /// The shortest way between two nodes of an element at rest (m).
@@ -61,7 +64,7 @@ impl App {
                 let Some(found) = find(&state, &critical.body, critical.element) else { continue };
                 let name = format!("{} {}", critical.body, critical.element);
                 if ui.button(name).on_hover_text("go there").clicked() {
-                    wanted = Some((found.place, 0.25 * found.diagonal));
+                    wanted = Some((self.settings.seen(found.rest, found.place), 0.25 * found.diagonal));
                 }
                 let material = found.body.element_materials.get(found.element);
                 ui.label(
@@ -85,7 +88,7 @@ impl App {
         let state = self.state.clone();
         let found = state.breakdown.as_ref().and_then(|broken| find(&state, &broken.body, broken.criterion.element?));
         if let Some(found) = found {
-            self.orbit.go_to(found.place, 1.5 * found.diagonal);
+            self.orbit.go_to(self.settings.seen(found.rest, found.place), 1.5 * found.diagonal);
         }
     }
 }

@@ -24,8 +24,7 @@ const MOST_ARROWS: usize = 1500;
 
 /// Where a node is drawn, by where it rests and where it is.
 fn seen(rest: [f32; 3], place: [f32; 3], settings: &Settings) -> Vec3 {
-    let rest = Vec3::from_array(rest);
-    rest + (Vec3::from_array(place) - rest) * settings.deformation
+    settings.seen(Vec3::from_array(rest), Vec3::from_array(place))
 }
 
 /// Draws over a picture.
@@ -38,6 +37,8 @@ pub struct Marks<'a> {
     pub camera: &'a Camera,
     /// Of letters.
     pub colour: Color32,
+    /// Where what the mouse holds rests (m).
+    pub held: Option<Vec3>,
 }
 
 impl Marks<'_> {
@@ -56,10 +57,10 @@ impl Marks<'_> {
             self.arrows(state, settings, drawn.bodies.diagonal());
         }
         if settings.critical {
-            self.critical(state);
+            self.critical(state, settings);
         }
-        self.hands(state);
-        self.picked(state);
+        self.hands(state, settings);
+        self.picked(state, settings);
         self.axes();
         if let Some(field) = state.field.filter(|field| settings.field == Some(*field)) {
             let part = components(field).get(settings.component).filter(|part| **part != "length");
@@ -140,22 +141,22 @@ impl Marks<'_> {
     }
 
     /// The elements that set the stable step, the first the largest.
-    fn critical(&self, state: &State) {
+    fn critical(&self, state: &State, settings: &Settings) {
         let critical = state.loaded.iter().flat_map(|loaded| &loaded.critical).enumerate();
         for (number, critical) in critical {
             let found = find(state, &critical.body, critical.element);
-            let Some(at) = found.and_then(|found| self.at(found.place)) else { continue };
+            let Some(at) = found.and_then(|found| self.at(settings.seen(found.rest, found.place))) else { continue };
             self.painter.circle_stroke(at, if number == 0 { 9.0 } else { 6.0 }, Stroke::new(2.0, CRITICAL));
             let text = (number + 1).to_string();
             self.painter.text(at + vec2(9.0, -9.0), Align2::LEFT_BOTTOM, text, FontId::proportional(12.0), CRITICAL);
         }
     }
 
-    fn hands(&self, state: &State) {
+    fn hands(&self, state: &State, settings: &Settings) {
         for held in &state.held {
-            let (Some(from), Some(to)) = (self.at(held.point.as_vec3()), self.at(held.target.as_vec3())) else {
-                continue;
-            };
+            let drawn = |place: Vec3| self.held.map_or(place, |rest| settings.seen(rest, place));
+            let ends = [held.point, held.target].map(|place| self.at(drawn(place.as_vec3())));
+            let [Some(from), Some(to)] = ends else { continue };
             let way = to - from;
             let across = vec2(-way.y, way.x).normalized() * 4.0;
             // a spring
@@ -171,16 +172,19 @@ impl Marks<'_> {
         }
     }
 
-    fn picked(&self, state: &State) {
-        let node = state.picked.as_ref().and_then(|picked| {
+    fn picked(&self, state: &State, settings: &Settings) {
+        let place = state.picked.as_ref().and_then(|picked| {
             let loaded = state.loaded.as_ref()?;
             let number = loaded.bodies.iter().position(|body| body.name == picked.pick.body)?;
-            let corners = picked.pick.nodes.map(|node| state.bodies.get(number)?.positions.get(node as usize));
-            let [a, b, c] = corners.map(|place| place.map(|place| Vec3::from_array(*place)));
+            let (body, now) = (loaded.bodies.get(number)?, state.bodies.get(number)?);
+            let [a, b, c] = picked.pick.nodes.map(|node| {
+                let node = node as usize;
+                Some(seen(*body.rest.get(node)?, *now.positions.get(node)?, settings))
+            });
             let weights = picked.pick.weights.map(|weight| weight as f32);
             Some(a? * weights[0] + b? * weights[1] + c? * weights[2])
         });
-        if let Some(at) = node.and_then(|place| self.at(place)) {
+        if let Some(at) = place.and_then(|place| self.at(place)) {
             self.painter.circle_stroke(at, 6.0, Stroke::new(2.5, PICKED));
             self.painter.circle_filled(at, 2.0, PICKED);
         }

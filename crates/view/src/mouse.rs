@@ -2,7 +2,8 @@
 
 use crate::app::App;
 use egui::{PointerButton, Pos2, Rect, Response, Ui};
-use glam::{DVec3, Vec2};
+use glam::{Vec2, Vec3};
+use sinew::Pick;
 use sinew::driver::Command;
 
 /// The hand of the mouse.
@@ -15,8 +16,19 @@ pub enum Drag {
     Turn,
     /// Moves what is seen.
     Pan,
-    /// Pulls at a body; how far away that is along the line of sight (m), once it is held.
-    Grab(Option<f32>),
+    /// Pulls at a body, if one was met.
+    Grab(Option<Grip>),
+}
+
+/// What the mouse holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grip {
+    /// Where it rests (m).
+    pub rest: Vec3,
+    /// Where it was when it was taken hold of (m).
+    pub from: Vec3,
+    /// How far away it was drawn then, along the line of sight (m).
+    depth: f32,
 }
 
 /// Where the picture is on the screen.
@@ -61,16 +73,15 @@ impl App {
                 () => Drag::Pan,
             });
             if let (Some(Drag::Grab(_)), Some(at)) = (self.drag, pressed.or(response.interact_pointer_pos())) {
-                let (origin, direction) = self.ray(at, frame);
-                self.source.send(Command::Grab { hand: HAND, origin, direction });
+                self.drag = Some(Drag::Grab(self.grab(at, frame)));
             }
         }
         let by = response.drag_delta();
         match self.drag {
             Some(Drag::Turn) => self.orbit.turn(Vec2::new(by.x, by.y)),
             Some(Drag::Pan) => self.orbit.pan(Vec2::new(by.x, by.y) * frame.scale, frame.size()),
-            Some(Drag::Grab(depth)) => self.pull(depth, response, frame),
-            None => {}
+            Some(Drag::Grab(Some(grip))) => self.pull(&grip, response, frame),
+            Some(Drag::Grab(None)) | None => {}
         }
         let is_over =
             response.drag_stopped() || (self.drag.is_some() && !response.dragged() && !response.drag_started());
@@ -82,31 +93,43 @@ impl App {
         }
         let at = response.interact_pointer_pos().or_else(|| ui.input(|input| input.pointer.interact_pos()));
         if let Some(at) = at.filter(|_| response.clicked()) {
-            let (origin, direction) = self.ray(at, frame);
-            self.source.send(Command::Pick { origin, direction });
+            let pick = self.pick(at, frame).map(Box::new);
+            self.source.send(Command::PickAt(pick));
         }
         if response.double_clicked() {
             self.to_fit = true;
         }
     }
 
-    /// Moves what the hand pulls towards below the mouse, as far away as what it took hold of.
-    fn pull(&mut self, depth: Option<f32>, response: &Response, frame: &Frame) {
+    /// Takes hold of what is drawn at a point of the screen.
+    fn grab(&mut self, at: Pos2, frame: &Frame) -> Option<Grip> {
+        let pick = self.pick(at, frame)?;
+        let body = self.state.loaded.as_ref()?.bodies.iter().find(|body| body.name == pick.body)?;
+        let corner = |(node, weight): (&u32, f64)| {
+            body.rest.get(*node as usize).map(|place| Vec3::from_array(*place) * weight as f32)
+        };
+        let rest: Vec3 = pick.nodes.iter().zip(pick.weights).filter_map(corner).sum();
+        let from = pick.point.as_vec3();
+        let depth = 1.0 / self.orbit.camera(frame.size()).project(self.settings.seen(rest, from)).z;
+        self.source.send(Command::GrabAt { hand: HAND, pick: Box::new(pick) });
+        (depth > 0.0).then_some(Grip { rest, from, depth })
+    }
+
+    /// Moves what the hand pulls towards below the mouse, as far away as what it took hold of was drawn. Where
+    /// deformation is drawn enlarged, ways are so many times shorter than they look.
+    fn pull(&mut self, grip: &Grip, response: &Response, frame: &Frame) {
         let camera = self.orbit.camera(frame.size());
-        let depth = depth.or_else(|| {
-            let held = self.state.held.iter().find(|held| held.hand == HAND)?;
-            Some(1.0 / camera.project(held.point.as_vec3()).z).filter(|depth| *depth > 0.0)
-        });
-        self.drag = Some(Drag::Grab(depth));
-        if let (Some(depth), Some(at)) = (depth, response.interact_pointer_pos()) {
-            let target = camera.eye() + camera.ray(frame.pixel(at)) * depth;
+        if let Some(at) = response.interact_pointer_pos() {
+            let seen = camera.eye() + camera.ray(frame.pixel(at)) * grip.depth;
+            let way = seen - self.settings.seen(grip.rest, grip.from);
+            let target = grip.from + way / self.settings.deformation.max(1.0);
             self.source.send(Command::MoveGrab { hand: HAND, target: target.into() });
         }
     }
 
-    /// From the eye through a point of the screen.
-    fn ray(&self, at: Pos2, frame: &Frame) -> (DVec3, DVec3) {
+    /// What is drawn at a point of the screen.
+    fn pick(&self, at: Pos2, frame: &Frame) -> Option<Pick> {
         let camera = self.orbit.camera(frame.size());
-        (camera.eye().into(), camera.ray(frame.pixel(at)).into())
+        self.scenery.pick(&self.state, &self.settings, camera.eye().into(), camera.ray(frame.pixel(at)).into())
     }
 }

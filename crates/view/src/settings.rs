@@ -79,6 +79,13 @@ impl Default for Settings {
     }
 }
 
+impl Settings {
+    /// Where something is drawn that rests at a place and is at another (m).
+    pub fn seen(&self, rest: Vec3, place: Vec3) -> Vec3 {
+        rest + (place - rest) * self.deformation
+    }
+}
+
 /// All fields, with their numbers.
 pub const FIELDS: [OutputField; 21] = [
     OutputField::Displacement,

@@ -1,6 +1,7 @@
 //! From a state of the driver to the surfaces that are drawn of it.
 
 mod body;
+mod pick;
 
 use crate::scene3d::{Surface, Tissue};
 use crate::settings::{Settings, about};

@@ -50,6 +50,18 @@ fn a_file_is_loaded_with_the_files_that_it_names() {
 }
 
 #[test]
+fn a_file_may_have_a_space_in_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir_all(folder.path().join("my meshes")).unwrap();
+    std::fs::write(folder.path().join("one.ron"), ONE.replace("meshes/one.msh", "my meshes/number one.msh")).unwrap();
+    std::fs::write(folder.path().join("my meshes/number one.msh"), MESH).unwrap();
+    let mut app = app_in(folder.path());
+    let handle = file_of(&app, "one.ron");
+    let scene = spawn_asset(&mut app, handle);
+    until(&mut app, |app| runs(app, scene));
+}
+
+#[test]
 fn a_file_that_changes_starts_anew_and_one_that_is_wrong_does_not() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bar.ron");

@@ -85,3 +85,53 @@ fn where_a_scene_starts_anew_hands_of_before_are_gone_and_others_stay() {
         before = hand;
     }
 }
+
+/// A bar that runs, and a hand that pulls at a place of it to another.
+fn held(app: &mut App, target: Vec3) -> (Entity, Entity) {
+    let scene = spawn(app, BAR);
+    update(app, 3);
+    let hand = app.world_mut().spawn(SoftGrab::new(scene, picked(app, scene, 0.05), target)).id();
+    update(app, 1);
+    (scene, hand)
+}
+
+fn picked(app: &mut App, scene: Entity, x: f32) -> sinew::Pick {
+    let ray = Ray3d { origin: Vec3::new(x, 0.01, 1.0), direction: Dir3::NEG_Z };
+    simulation_mut(app, scene).pick_from(ray, &GlobalTransform::IDENTITY).unwrap().unwrap()
+}
+
+fn grabs(app: &App, scene: Entity) -> Vec<sinew::Grab> {
+    simulation(app, scene).grabs().map(|(_, grab)| grab.clone()).collect()
+}
+
+#[test]
+fn a_hand_that_stands_still_pulls_where_it_is_also_when_its_scene_is_moved() {
+    let mut app = app();
+    let target = Vec3::new(0.05, 0.01, 0.03);
+    let (scene, _) = held(&mut app, target);
+    let moved = Vec3::new(0.0, 0.0, 0.02);
+    app.world_mut().entity_mut(scene).insert(bevy_transform::components::Transform::from_translation(moved));
+    // it is led into the world at the end of a frame
+    update(&mut app, 2);
+    let held = grabs(&app, scene);
+    assert!(held.len() == 1 && held[0].target.as_vec3().distance(target - moved) < 1e-6, "{held:?}");
+}
+
+#[test]
+fn who_is_no_hand_any_more_lets_go_and_one_that_is_put_in_anew_grabs_anew() {
+    let mut app = app();
+    let target = Vec3::new(0.05, 0.01, 0.03);
+    let (scene, hand) = held(&mut app, target);
+    let before = grabs(&app, scene);
+    let other = picked(&mut app, scene, 0.015);
+    app.world_mut().entity_mut(hand).insert(SoftGrab::new(scene, other.clone(), target));
+    update(&mut app, 1);
+    let held = grabs(&app, scene);
+    assert!(before.len() == 1 && held.len() == 1, "{held:?}");
+    // two ticks have passed since it was picked
+    assert!(held[0].from.distance(other.point) < 2e-3 && before[0].from.distance(other.point) > 0.02, "{held:?}");
+    app.world_mut().entity_mut(hand).remove::<SoftGrab>();
+    update(&mut app, 1);
+    assert!(grabs(&app, scene).is_empty() && app.world().get_entity(hand).is_ok());
+    assert!(messages::<Refused>(&mut app).is_empty());
+}

@@ -115,3 +115,59 @@ fn a_scene_that_breaks_down_is_told_and_the_app_goes_on() {
     update(&mut app, 5);
     assert!(simulation(&app, wild).time() > 0.05 && messages::<BrokeDown>(&mut app).is_empty());
 }
+
+/// How low the lowest vertex is (m).
+fn lowest(app: &App, body: Entity) -> f32 {
+    places(app, body).iter().map(|place| place[2]).fold(f32::INFINITY, f32::min)
+}
+
+#[test]
+fn going_back_is_seen_while_the_clock_is_paused() {
+    let mut app = app();
+    let scene = spawn(&mut app, BAR);
+    app.world_mut().entity_mut(scene).insert(SoftProbes::default());
+    update(&mut app, 10);
+    let bar = body(&app, scene, "bar");
+    app.world_mut().resource_mut::<SinewClock>().paused = true;
+    update(&mut app, 2);
+    let tip = |app: &App| app.world().get::<SoftProbes>(scene).unwrap().0["tip"][2];
+    assert!(lowest(&app, bar) < -1e-3 && tip(&app) < -1e-3);
+    let kept = simulation_mut(&mut app, scene).snapshot().unwrap();
+    let low = lowest(&app, bar);
+    simulation_mut(&mut app, scene).restart().unwrap();
+    update(&mut app, 1);
+    assert!(lowest(&app, bar).abs() < 1e-9 && tip(&app).abs() < 1e-9, "{}", lowest(&app, bar));
+    simulation_mut(&mut app, scene).restore(&kept).unwrap();
+    update(&mut app, 1);
+    assert!((lowest(&app, bar) - low).abs() < 1e-7 && tip(&app) < -1e-3);
+}
+
+#[test]
+fn nothing_is_drawn_between_a_state_and_one_that_was_gone_back_to() {
+    let mut app = app();
+    let scene = spawn(&mut app, BAR);
+    update(&mut app, 10);
+    let bar = body(&app, scene, "bar");
+    let low = lowest(&app, bar);
+    let tick = app.world().resource::<Time<Fixed>>().timestep();
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(tick / 4));
+    simulation_mut(&mut app, scene).restart().unwrap();
+    while simulation(&app, scene).step_count() == 0 {
+        app.update();
+    }
+    assert!(lowest(&app, bar) > 0.2 * low, "{} of {low}", lowest(&app, bar));
+}
+
+#[test]
+fn probes_are_those_of_the_scene_that_runs() {
+    let mut app = app();
+    let scene = spawn(&mut app, BAR);
+    app.world_mut().entity_mut(scene).insert(SoftProbes::default());
+    update(&mut app, 3);
+    let other = BAR.replace("\"tip\"", "\"end\"");
+    let handle = app.world_mut().resource_mut::<Assets<SceneText>>().add(SceneText::new("other", other));
+    app.world_mut().entity_mut(scene).insert(SoftScene(handle));
+    update(&mut app, 3);
+    let names: Vec<&String> = app.world().get::<SoftProbes>(scene).unwrap().0.keys().collect();
+    assert_eq!(names, ["end"]);
+}

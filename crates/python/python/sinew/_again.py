@@ -16,13 +16,9 @@ def scene(
     sets: Sequence[str],
     allow_outside: bool,
 ) -> Scene:
-    """A scene of a file, or of a text with its folder or its files; `sets` are texts `place=value`."""
-    values = dict(one.split("=", 1) for one in sets)
-    if text is None or name is None:
-        return Scene(path or "", values, allow_outside=allow_outside)
-    if files is not None:
-        return Scene.from_text(text, values, name=name, files=files)
-    return Scene.from_text(text, values, name=name, folder=path, allow_outside=allow_outside)
+    """A scene of a file, or of a text with its folder or its files; `sets` are texts `place=value`, put in one after
+    the other."""
+    return Scene._made_of(name, text, path, files, sets, allow_outside)
 
 
 def snapshot(data: bytes) -> Snapshot:

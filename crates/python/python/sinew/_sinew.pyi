@@ -39,6 +39,16 @@ class Scene:
         """A scene of a text. Meshes and laws that it names are in `folder`, or in memory: `files`, by the names that
         the scene gives them; then nothing is read from a disk. `name` stands in messages."""
 
+    @classmethod
+    def _made_of(
+        cls,
+        name: str | None,
+        text: str | None,
+        path: str | os.PathLike[str] | None,
+        files: Mapping[str, bytes] | None,
+        sets: Sequence[str],
+        allow_outside: bool,
+    ) -> Scene: ...
     def with_values(self, set: Mapping[str, Any]) -> Scene:
         """The same scene, read again with these values too."""
 
@@ -294,7 +304,9 @@ class Simulation:
     def advance_for(self, budget: float, until: float = ...) -> dict[str, Any]:
         """Takes as many steps as fit into a budget of time on the wall (s), one at least, until a simulated time (s).
 
-        Gives `steps`, `simulated` (s), `took` (s), `real_time_factor` and `why` it ended: "reached", "budget", "rest".
+        Gives `steps`, `simulated` (s), `took` (s), `real_time_factor`, simulated time over that on the wall (in a
+        summary it is the other way round), and `why` it ended: "reached", "budget", "rest". It does not wait for
+        `real_time: true` of a scene, as the other ways to step do.
         """
 
     def finish(self) -> None:
@@ -387,9 +399,9 @@ class Simulation:
         """Holds the weighted mean of nodes, which are rows of Body.positions()."""
 
     def picture(self, array: str | None = None, **words: Any) -> Picture:
-        """A picture of the present state, by the software renderer, without tools. `words` are those of the scene's
-        `picture` (`from_` for `from`): `picture(field="VonMises", from_=(1, -2, 0.6), size=(640, 480), ghost=True)`.
-        `array` colours by another array or a component of one: `"displacement.z"`."""
+        """A picture of the present state, by the software renderer, without tools; of bodies with a skin that is drawn.
+        `words` are those of the scene's `picture` (`from_` for `from`): `picture(field="VonMises", from_=(1, -2, 0.6),
+        size=(640, 480), ghost=True)`. `array` colours by another array or a component of one: `"displacement.z"`."""
 
     def _repr_png_(self) -> bytes: ...
 
@@ -412,5 +424,8 @@ class SweepResults:
     def add(self, number: int, line: str, /) -> None: ...
     def write_table(self) -> None: ...
 
+def check_kept(scene: Scene, names: list[str], at: list[float], /) -> None: ...
+def probes_at(simulation: Simulation, names: list[str], times: list[float], /) -> list[list[list[float]]]: ...
+def warnings_of(simulation: Simulation, /) -> list[str]: ...
 def latin_hypercube_rows(ranges: list[tuple[str, tuple[float, float]]], count: int, seed: int, /) -> list[list[float]]: ...
 def read_sweep_file(path: str, /) -> tuple[str, list[dict[str, Any]], list[str], list[float]]: ...

@@ -10,8 +10,8 @@ from ._sinew import Simulation
 
 
 def log(simulation: Simulation, entity: str = "sinew", *, timeline: str = "time", recording: Any = None) -> None:
-    """Logs the present state at the simulated time: the surface of each body at `ENTITY/BODY`, coloured by how far
-    nodes have moved, and what probes see at `ENTITY/probes/NAME`.
+    """Logs the present state at the simulated time: the surface of each body's mesh (not its skin) at `ENTITY/BODY`,
+    coloured by how far nodes have moved, and what probes see at `ENTITY/probes/NAME`.
 
     Goes to the recording of `rerun.init`, or to the one given. Statistics that Rerun sends are its own:
     `rerun analytics disable` turns them off.

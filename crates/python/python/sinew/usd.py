@@ -22,7 +22,9 @@ def write(
     up: str = "Z",
     frames_per_second: float = 24.0,
 ) -> None:
-    """Goes on to each of the times (s) in their order and writes where the surfaces are then.
+    """Goes on to each of the times (s) in their order and writes where the surfaces are then: those of the meshes, also
+    of bodies that have a skin. What lies before the present time is that, and a state is written once, also where
+    several times lie within one step.
 
     `.usda` is text, and needs nothing else; `.usdc` and `.usd` are packed by `pip install usd-core`. Lengths are in
     metres, `up` is the axis that points up: "Y" or "Z". Where elements are removed, the surface changes.
@@ -33,8 +35,12 @@ def write(
     if ending not in (".usda", ".usdc", ".usd"):
         raise ValueError(f"{os.fspath(path)}: a file name that ends in .usda, .usdc or .usd is wanted")
     samples: dict[str, list[tuple[float, NDArray[Any], NDArray[Any]]]] = {name: [] for name in simulation.bodies}
+    written: float | None = None
     for time in times:
         simulation.advance_to(time)
+        if simulation.time == written:
+            continue
+        written = simulation.time
         for name, body in simulation.bodies.items():
             samples[name].append((simulation.time * frames_per_second, body.positions(), body.triangles))
     text = _text(samples, up, frames_per_second)

@@ -125,8 +125,8 @@ impl Playback {
             Command::Speed(speed) if speed > 0.0 => self.speed = speed,
             Command::Field(field) => self.field = field,
             Command::Arrows(field) => self.arrows = field,
-            Command::Pick { origin, direction } => {
-                self.picked = pick::pick(&self.loaded.bodies, &self.state.bodies, origin, direction);
+            Command::PickAt(picked) => {
+                self.picked = picked.and_then(|picked| pick::about(&self.loaded.bodies, *picked));
             }
             Command::Release { .. } | Command::MoveGrab { .. } | Command::Lend(_) => {}
             _ => {

@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 /// What is known of a body's mesh, and where it is drawn.
 pub struct BodyMesh {
-    cells: Cells,
+    pub(super) cells: Cells,
     faces: Faces,
     /// What it began with.
     skin: Skin,
@@ -26,7 +26,7 @@ pub struct BodyMesh {
     /// Places of elements by their numbers.
     places: HashMap<i64, usize>,
     /// Faces that are seen, and since when.
-    outer: (u64, Vec<Outer>),
+    pub(super) outer: (u64, Vec<Outer>),
     /// Where its nodes are drawn (m).
     pub vertices: Vec<Vec3>,
     /// Whether it may be drawn from where its nodes are on the device.
