@@ -20,8 +20,7 @@ pub(super) fn read(world: &World, name: &str) -> Option<ToolReading> {
     let (force, moment) = state.felt();
     // where it was when forces acted
     let clock = world.resource::<Clock>();
-    let dt = clock.time_step;
-    let earlier = tool.pose(&state.motion.after(-dt, &tool.inertia));
+    let earlier = tool.pose(&state.motion.after(-clock.last_step(), &tool.inertia));
     let center = earlier.place(tool.inertia.center);
     let free = FreeReading {
         mass: tool.inertia.mass,
@@ -129,19 +128,22 @@ pub(super) fn kinetic(world: &World) -> f64 {
     tools.all.iter().zip(&motions.all).map(|(tool, state)| state.motion.kinetic(&tool.inertia)).sum()
 }
 
-/// What gravity would do on all of them over ways as long as their radii of gyration (J): of tools that rest on
-/// something nothing else tells what is much.
-pub(super) fn weight_energy(world: &World) -> f64 {
-    let (Some(tools), Some(signals)) = (world.get_resource::<FreeTools>(), world.get_resource::<Signals>()) else {
+/// What contacts of free tools gave (J), of each such a share at most of what gravity would do on it over a way as long
+/// as its radius of gyration: of tools that rest on something nothing else tells what is much. Steps of nodes are on the
+/// host.
+pub(super) fn given_by_weight(world: &World, share: f64) -> f64 {
+    let (tools, motions) = (world.get_resource::<FreeTools>(), world.get_resource::<FreeMotions>());
+    let (Some((tools, motions)), Some(signals)) = (tools.zip(motions), world.get_resource::<Signals>()) else {
         return 0.0;
     };
-    let of_tool = |tool: &FreeTool| {
+    let of_tool = |(tool, state): (&FreeTool, &FreeMotion)| {
         let gravity = tool.gravity.iter().map(|&slot| DVec3::from_slice(&signals.values()[slot][..3])).sum::<DVec3>();
         let moments = tool.inertia.moments;
         let sum = moments.x_axis.x + moments.y_axis.y + moments.z_axis.z;
-        gravity.length() * (0.5 * sum * tool.inertia.mass).sqrt()
+        let of_weight = gravity.length() * (0.5 * sum * tool.inertia.mass).sqrt();
+        (-lost(world, tool, state)).max(0.0).min(share * of_weight)
     };
-    tools.all.iter().map(of_tool).sum()
+    tools.all.iter().zip(&motions.all).map(of_tool).sum()
 }
 
 /// Adds to the energies of bodies those of free tools: work done on them counts with that of loads, where it is

@@ -8,7 +8,7 @@ use crate::backend::cpu::BlockSums;
 use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::{Criterion, Error, Instability};
-use crate::scene::schema::{Guard, Guards, Inversion};
+use crate::scene::schema::{ElementKind, Guard, Guards, Inversion};
 use bevy_ecs::prelude::*;
 
 /// What leads to a breakdown when the scene insists on a step beyond the stable one.
@@ -273,10 +273,17 @@ fn hourglass(memory: &mut GuardMemory, seen: &Sample, settings: &GuardSettings, 
                 true => format!("{:.0} % of", 100.0 * share),
                 false => format!("more than {MOST_TOLD} times"),
             };
+            let is_tet10 = world.get::<Block>(*entity).is_some_and(|block| block.kind == ElementKind::Tet10);
+            let reason = match is_tet10 {
+                true => {
+                    "the volume at the points of an element differs from their mean, to which Tet10 is held; use a finer \
+                     mesh"
+                }
+                false => "motion that elements with one point do not feel; use Hex8MeanDilatation, a finer mesh",
+            };
             let message = format!(
                 "hourglass control of {part} holds {holds} the part's elastic energy ({:.0} % are a warning, \
-                 guards.hourglass): motion that elements with one point do not feel; use Hex8MeanDilatation, a finer mesh, \
-                 or spread the load over more nodes",
+                 guards.hourglass): {reason}, or spread the load over more nodes",
                 100.0 * limit
             );
             warn(memory, world, "hourglass", &part, share, limit, message);

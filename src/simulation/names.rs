@@ -188,6 +188,7 @@ pub const UNITS: &[(&str, &str)] = &[
     ("guards.scale", "J"),
     ("guards.imbalance", "1"),
     ("guards.scheme_loss", "J"),
+    ("guards.least_scheme_loss", "J"),
     ("guards.turned_over", "J"),
     ("guards.longest_step", "s"),
     ("guards.peaks.*", "J"),

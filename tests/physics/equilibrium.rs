@@ -367,3 +367,25 @@ fn a_body_that_flies_away_ends_the_search_and_is_named() {
         assert!(text.contains("-1.00)") && text.contains("nothing holds it"), "{text}");
     }
 }
+
+/// A cube of 2 mm that a jaw holds half a metre from its hinge is carried round by 120°: it goes 250 of its lengths,
+/// and is held all the way.
+#[test]
+fn what_a_tool_carries_round_far_from_its_origin_does_not_fly_away() {
+    let run: &Configuration = &configurations()[0];
+    let mut simulation = run.start(
+        "(duration: 1, analysis: Static(),
+        bodies: {\"b\": (mesh: Box(size: (0.002, 0.002, 0.002), cells: (1, 1, 1)), material: \"m\", translate: (0.5, 0, 0))},
+        materials: {\"m\": (density: 1000, neo_hookean: Young(young: 1e4, poisson: 0.3))},
+        tools: {\"jaw\": (shape: Box(size: (1.1, 0.01, 0.002)), at: (0, 0, 0.003),
+            moves: [(rotation: (0, 0, 120), curve: Smooth(end: 1))])},
+        attachments: [Grasp(tool: \"jaw\", body: \"b\", closed: Step(), on: Set(\"z1\"), reach: 0.003)])",
+    );
+    rest("carried round", &mut simulation);
+    let (places, ways) = (simulation.rest_positions("b").unwrap(), simulation.displacements("b").unwrap());
+    let turn = glam::DQuat::from_rotation_z(120.0_f64.to_radians());
+    for (place, way) in places.iter().zip(&ways) {
+        let off = (*place + *way).distance(turn * *place);
+        assert!(off < 1e-5, "{place} is {off:e} m off");
+    }
+}

@@ -43,7 +43,9 @@ const THOROUGH: f64 = 1e-4;
 /// nothing to do with each other.
 const DIVERGED: f64 = 10.0;
 /// Of all forces the share that may be left where iterations leave more of the residual than there was when they began:
-/// what they have found is worse than where nobody had looked for anything.
+/// what they have found is worse than where nobody had looked for anything. A tenth is a hundred times the usual
+/// tolerance, and forces that are off by so much do work that is off by as much as guards let the energy of implicit
+/// steps be.
 const WORSE: f64 = 0.1;
 /// Iterations of a linear solve without a budget.
 const MOST_PRODUCTS: u64 = 5000;
@@ -170,9 +172,7 @@ impl Newton<'_, '_> {
             return Err(Lost::Because("forces at the beginning of the step are no numbers".into()));
         }
         let mut size = self.residual();
-        let first = size;
-        // what is moved as told may begin with no residual at all: then ten times of it is nothing
-        let told = self.space.to_go.moves();
+        let mut first = size;
         let mut before = size;
         let (mut floor, mut iterations, mut remaining) = (0.0, 0, f64::INFINITY);
         loop {
@@ -195,7 +195,7 @@ impl Newton<'_, '_> {
             let ends = iterations >= self.settings.newton && !moves || self.left() < ITERATION + u64::from(moves);
             let worse = self.settings.newton > 1 && size > first && size > WORSE * scale;
             let diverged = !solved && ends && (worse || size > DIVERGED * first);
-            if diverged && self.settings.budget.is_none() && !told && !self.settings.formula.is_of_rest() {
+            if diverged && self.settings.budget.is_none() && !self.settings.formula.is_of_rest() {
                 return Err(Lost::Because(format!(
                     "after {iterations} Newton iterations {:.1} times the residual of their beginning is left, {size:.3e} N{}",
                     size / first,
@@ -217,7 +217,12 @@ impl Newton<'_, '_> {
                 _ => (DESCENT * (size / before).powi(2)).clamp(FORCING[1], FORCING[0]),
             };
             let needed = if self.settings.newton > 1 { 0.5 * enough / size } else { 0.0 };
-            let way = self.solve_linear(forcing.max(needed).min(0.5), moves)?;
+            self.set_right(moves)?;
+            if iterations == 0 && moves {
+                // what is moved as told may begin at rest: the residual of its way counts with that of where it was
+                first = first.max(self.sums.norm(&self.space.residual));
+            }
+            let way = self.solve_linear(forcing.max(needed).min(0.5))?;
             before = size;
             tried = match self.search(way, &mut size, enough) {
                 Err(Lost::Because(_)) if !moves && self.is_rounding(size)? => {
@@ -309,9 +314,8 @@ impl Newton<'_, '_> {
         Ok(())
     }
 
-    /// p ≈ A⁻¹ b on free axes; `moves`: where held axes still have to go.
-    fn solve_linear(&mut self, tolerance: f64, moves: bool) -> Result<Way, Lost> {
-        self.set_right(moves)?;
+    /// p ≈ A⁻¹ b on free axes.
+    fn solve_linear(&mut self, tolerance: f64) -> Result<Way, Lost> {
         let Self { trial, motion, space, unresisted, .. } = self;
         let fields = unresisted.fields(&space.correction, (&space.net, &motion.free), trial.springs);
         fields.iter().for_each(|field| field.take_out_of_forces(&mut space.residual, &motion.free));

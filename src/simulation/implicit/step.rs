@@ -200,8 +200,8 @@ impl Implicit {
             let place = iterations.place(h);
             grasped.note(trial.world, &place, &iterations.space.net, Some(&iterations.kept.forces));
             let count = if *works { add_work } else { add_internal_work };
-            count(trial.world, axes, &iterations.kept.forces, &place);
-            note_formula(trial.world, axes, &iterations.kept.forces, &place);
+            let spent = count(trial.world, axes, &iterations.kept.forces, &place);
+            note_formula(trial.world, &spent);
             place.arrive(axes, trial.world);
         }
         iterations.count(trial.count);

@@ -6,26 +6,37 @@ use super::place::Place;
 use crate::components::*;
 use bevy_ecs::prelude::*;
 
-/// Adds up the work against internal forces alone, for the guard of energy.
-pub(super) fn add_internal_work(world: &mut World, axes: &Axes, before: &ForcesBefore, place: &Place<'_>) {
+/// Adds up the work against internal forces alone, for the guard of energy, and gives what the step did at free axes.
+pub(super) fn add_internal_work(world: &mut World, axes: &Axes, before: &ForcesBefore, place: &Place<'_>) -> Spent {
+    let mut all = Spent::default();
     for (body, range) in axes.each() {
         // where nobody guards it, it is not there
-        let (Some(internal), true) = (world.get::<InternalForce>(body), world.get::<InternalWork>(body).is_some())
-        else {
+        if world.get::<InternalWork>(body).is_none() {
             continue;
-        };
-        let of_axis =
-            |axis: usize| 0.5 * (before.internal.get(axis) + internal.get(axis - range.start)) * place.moved(axis);
-        let work = range.clone().map(of_axis).sum();
+        }
+        let (internal, external) = (world.get::<InternalForce>(body), world.get::<ExternalForce>(body));
+        let accelerations = world.get::<Acceleration>(body);
+        let mut work = 0.0;
+        for axis in range.clone() {
+            let at = axis - range.start;
+            let acceleration = accelerations.map_or(0.0, |column| column.get(at));
+            let forces = [internal.map_or(0.0, |column| column.get(at)), external.map_or(0.0, |column| column.get(at))];
+            let spent = Spent::at(place, before, axis, (acceleration, forces));
+            work += spent.on_elements;
+            if place.motion.free[axis] {
+                all.add(&spent);
+            }
+        }
         if let Some(mut sum) = world.get_mut::<InternalWork>(body) {
             sum.add(work);
         }
     }
+    all
 }
 
 /// What a step did at an axis, or at all of them (J).
 #[derive(Default)]
-struct Spent {
+pub(super) struct Spent {
     by_loads: f64,
     on_elements: f64,
     damped: f64,
@@ -65,31 +76,21 @@ impl Spent {
     }
 }
 
-/// Adds up for the guards what a step's formula takes of all free axes, as [`add_work`] has it node by node, and what
-/// is turned over there.
-pub(super) fn note_formula(world: &mut World, axes: &Axes, before: &ForcesBefore, place: &Place<'_>) {
-    let mut all = Spent::default();
-    for (body, range) in axes.each() {
-        let (internal, external) = (world.get::<InternalForce>(body), world.get::<ExternalForce>(body));
-        let accelerations = world.get::<Acceleration>(body);
-        for axis in range.clone().filter(|&axis| place.motion.free[axis]) {
-            let at = axis - range.start;
-            let acceleration = accelerations.map_or(0.0, |column| column.get(at));
-            let forces = [internal.map_or(0.0, |column| column.get(at)), external.map_or(0.0, |column| column.get(at))];
-            all.add(&Spent::at(place, before, axis, (acceleration, forces)));
-        }
-    }
+/// Adds up for the guards what a step's formula took of free axes, and what was turned over there.
+pub(super) fn note_formula(world: &mut World, spent: &Spent) {
     if let Some(mut memory) = world.get_resource_mut::<GuardMemory>() {
-        memory.scheme_loss += all.by_formula();
-        memory.turned_over += all.turned_over();
+        memory.scheme_loss += spent.by_formula();
+        memory.least_scheme_loss = memory.least_scheme_loss.min(memory.scheme_loss);
+        memory.turned_over += spent.turned_over();
     }
 }
 
 /// Adds up what a step did. Forces work with the mean of those at both ends: of linear bodies that is what they
 /// store. What is missing then to the change of kinetic energy of a free axis went into the formula: implicit Euler
-/// takes ½ M Δv² + ½ Δu·ΔF, less what a change of loads gives.
-pub(super) fn add_work(world: &mut World, axes: &Axes, before: &ForcesBefore, place: &Place<'_>) {
+/// takes ½ M Δv² + ½ Δu·ΔF, less what a change of loads gives. Gives what all of it did at free axes.
+pub(super) fn add_work(world: &mut World, axes: &Axes, before: &ForcesBefore, place: &Place<'_>) -> Spent {
     let motion = place.motion;
+    let mut all = Spent::default();
     let mut columns = world.query::<(
         &mut Work,
         Option<&mut SchemeLoss>,
@@ -124,6 +125,7 @@ pub(super) fn add_work(world: &mut World, axes: &Axes, before: &ForcesBefore, pl
             }
             if motion.free[axis] {
                 lost[at / 3] += spent.by_formula();
+                all.add(&spent);
             }
         }
         if let Some(mut loss) = loss {
@@ -133,4 +135,5 @@ pub(super) fn add_work(world: &mut World, axes: &Axes, before: &ForcesBefore, pl
             });
         }
     }
+    all
 }

@@ -7,7 +7,8 @@ use super::{DEPENDENT, FreeMotion, null_space, reach, without_constraint};
 use crate::components::Reals;
 use glam::DVec3;
 
-/// A share of all forces that is more than rounding, where it is along a motion.
+/// A share of all forces that is more than rounding, where it is along a motion: in f32 rounding leaves some 1e-6 of
+/// them, and what is left of 1e-5 is rest there.
 const PUSHES: f64 = 1e-5;
 
 /// Pieces of bodies that some motion is left to which no constraint holds.
