@@ -5,6 +5,7 @@ use crate::components::*;
 use crate::observation::volume_left;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Quantity, Select};
+use crate::snapshot::hash_of;
 use bevy_ecs::prelude::*;
 
 /// Spawns all probes.
@@ -15,6 +16,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let every = probe.every.unwrap_or_else(|| scene.fields_every());
         let every = Cadence::new(every, time_step);
         let (what, peak) = (probe.what.clone(), probe.peak);
+        let of = format!("{:016x}", hash_of(&(&what, &probe.body, &probe.on)));
         let attachments = scene.attachments.iter().enumerate();
         let named = |wanted: &String| {
             attachments.clone().find(|(number, of)| of.name(*number).as_ref() == Some(wanted)).map(|(number, _)| number)
@@ -25,7 +27,8 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let Some(on) = probe.on.as_ref().or(of_volume.then_some(&whole)) else {
             // of a tool, whatever it touches, or of an attachment
             let (nodes, elements) = (Vec::new(), Vec::new());
-            world.spawn((Label(name.clone()), Probe { what, nodes, elements, volume: 0.0, attachment, every, peak }));
+            let probe = Probe { what, nodes, elements, volume: 0.0, attachment, every, peak, of };
+            world.spawn((Label(name.clone()), probe));
             continue;
         };
         let Some(body) = assembly.body(&probe.body) else { continue };
@@ -50,7 +53,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let volume = if of_volume { volume_left(&body.blocks, &elements, world) } else { 0.0 };
         world.spawn((
             Label(name.clone()),
-            Probe { what, nodes, elements, volume, attachment, every, peak },
+            Probe { what, nodes, elements, volume, attachment, every, peak, of },
             OfBody(body.entity),
         ));
     }

@@ -34,6 +34,9 @@ pub struct GuardMemory {
     /// What the formula of implicit steps has taken so far (J); negative where it has made energy.
     #[serde(default)]
     pub(crate) scheme_loss: f64,
+    /// The least that this has been (J): what a formula makes it may take again.
+    #[serde(default)]
+    pub(crate) least_scheme_loss: f64,
     /// What implicit steps have turned over so far (J): of each step the work of loads on free axes, that on elements
     /// there, and what damping took, whichever way they went.
     #[serde(default)]
@@ -47,6 +50,9 @@ pub struct GuardMemory {
     pub hourglass: BTreeMap<String, f64>,
     /// Of each probe that holds peaks, by name, the values of the largest size so far.
     pub probe_peaks: BTreeMap<String, Vec<f64>>,
+    /// What these are of: [`Probe::of`](super::Probe::of). Those of older versions lack it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub probe_peaks_of: BTreeMap<String, String>,
     /// The smallest J of all checks.
     pub least_volume_ratio: Option<Extreme>,
     /// The fastest node of all checks (m/s).

@@ -22,6 +22,9 @@ pub struct Probe {
     pub every: Cadence,
     /// Whether it holds of each number the value of the largest size so far.
     pub peak: bool,
+    /// A hash of what is observed, of which body and where, as the scene says it: of two scenes probes of one name may
+    /// differ.
+    pub of: String,
 }
 
 /// What the series of a body's skin is written as, beside VTU.

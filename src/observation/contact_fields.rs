@@ -121,11 +121,25 @@ fn into_surface(force: DVec3, along: DVec3) -> f64 {
 /// Gap (m) of each node, in the author's order: as contact saw it in the step, else by the surfaces as they are, as far
 /// as an edge is long on average; that where a node faces nothing so near.
 fn gaps(body: Entity, surface: &[FacetNow], world: &mut World) -> Result<Vec<f64>, Error> {
-    let nowhere = surface.iter().map(|facet| facet.edge).sum::<f64>() / surface.len().max(1) as f64;
+    let nowhere = mean_edge(body, surface, world);
     let mut gaps: Vec<f64> = gaps_and_slips(body, surface, world)?.into_iter().map(|[gap, _]| gap).collect();
     present::find((body, surface), nowhere, &mut gaps, world)?;
     gaps.iter_mut().filter(|gap| gap.is_infinite()).for_each(|gap| *gap = nowhere);
     Ok(gaps)
+}
+
+/// Mean length of the edges of a body's surface as it is (m); of the one at rest where all of the body is gone.
+fn mean_edge(body: Entity, surface: &[FacetNow], world: &World) -> f64 {
+    let mean = |edges: Vec<f64>| edges.iter().sum::<f64>() / edges.len().max(1) as f64;
+    let (Some(authoring), Some(rest), true) =
+        (world.get::<Authoring>(body), world.get::<RestPosition>(body), surface.is_empty())
+    else {
+        return mean(surface.iter().map(|facet| facet.edge).collect());
+    };
+    let place = |node: u32| rest.0[authoring.node_rows[node as usize] as usize];
+    let whole = authoring.surface(|_, _| true);
+    let facets = whole.iter().flat_map(|face| face.facets());
+    mean(facets.map(|[a, b, ..]| place(a).distance(place(b))).collect())
 }
 
 /// Gap (m) and length slid (m) of each node as contact has them, in the author's order; infinite where it faced nothing

@@ -75,6 +75,16 @@ pub fn internal_forces(world: &mut World, body: Entity) -> Result<Vec<DVec3>, Er
     Ok(authoring.node_rows.iter().map(|&row| by_row[row as usize]).collect())
 }
 
+/// What holds a node of a body (N), by its row: internal less external force along axes that are fixed or moved as
+/// told, 0 along free ones. Columns are on the host.
+pub(super) fn reaction(body: EntityRef<'_>, row: usize) -> DVec3 {
+    let internal = body.get::<InternalForce>().map_or(DVec3::ZERO, |force| force.vector(row));
+    let external = body.get::<ExternalForce>().map_or(DVec3::ZERO, |force| force.vector(row));
+    let axes = body.get::<ConstrainedAxes>().map_or(0, |axes| axes[row]);
+    let held = |axis: u32| f64::from(axes >> axis & 1);
+    (internal - external) * DVec3::new(held(0), held(1), held(2))
+}
+
 fn elements_of(world: &World, entity: Entity) -> Vec<ElementRow> {
     let all = (|| {
         let view = BlockView::now(world, entity)?;

@@ -2,7 +2,7 @@
 
 use super::contact_fields::contact_field;
 use super::element_fields::{BodyElements, ElementFields, ElementRows};
-use super::fields::internal_forces;
+use super::fields::{internal_forces, reaction};
 use crate::backend::cpu::Cpu;
 use crate::backend::device::bring_to_host;
 use crate::components::*;
@@ -204,17 +204,11 @@ fn node_vectors(field: OutputField, body: Entity, world: &mut World) -> Result<V
     let entity = world.entity(body);
     let vector = |reals: Option<&Reals>, row: usize| reals.map_or(DVec3::ZERO, |reals| reals.vector(row));
     let external = |row: usize| vector(entity.get::<ExternalForce>().map(|f| &f.0), row);
-    let axes = entity.get::<ConstrainedAxes>();
-    let reaction = |row: usize| {
-        let force = vector(entity.get::<InternalForce>().map(|f| &f.0), row) - external(row);
-        let held = |axis: u32| f64::from(axes.map_or(0, |axes| axes[row]) >> axis & 1);
-        force * DVec3::new(held(0), held(1), held(2))
-    };
     let value = |row: usize| match field {
         OutputField::Displacement => vector(entity.get::<Displacement>().map(|u| &u.0), row),
         OutputField::Velocity => vector(entity.get::<DisplacementIncrement>().map(|d| &d.0), row) * rate,
         OutputField::ExternalForce => external(row),
-        _ => reaction(row),
+        _ => reaction(entity, row),
     };
     let Some(authoring) = entity.get::<Authoring>() else { return Ok(Vec::new()) };
     Ok(authoring.node_rows.iter().map(|&row| value(row as usize)).collect())

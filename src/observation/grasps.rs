@@ -17,13 +17,11 @@ pub(super) fn read(world: &mut World, tool: &str, now: &[(usize, Pose)], reading
                 let (first, row) = (grasps.numbers() * place + grasps.numbers_a_grasp() * number, row as usize);
                 reading.spend(hold.get(first + 4), hold.get(first + 5));
                 // nodes whose elements are gone are held by nobody
-                if mass.get(row) <= 0.0 {
-                    continue;
-                }
+                let is_there = mass.get(row) > 0.0;
                 let (holds, force) = (hold.get(first + 3), -hold.vector_at(first));
-                reading.slipped += usize::from(ToolHold::has_slipped(holds));
-                // who slips out is held to the end of the step
-                if holds == ToolHold::HELD || force != DVec3::ZERO {
+                reading.slipped += usize::from(is_there && ToolHold::has_slipped(holds));
+                // who slips out, or loses its elements, is held to the end of the step
+                if is_there && holds == ToolHold::HELD || force != DVec3::ZERO {
                     let end = rest.0[row] - grasps.reference + u.vector(row);
                     reading.nodes += 1;
                     reading.force += force;

@@ -31,12 +31,12 @@ pub use frame::{WrittenFields, field_of, write as write_fields, write_whole};
 pub use guards::GuardSettings;
 pub use heading::Heading;
 pub use path::{PATH, columns_of_probe};
-pub use probes::{header, observe_probe, volume_left};
+pub use probes::{header, observe_probe, volume_left, with_peaks};
 pub use rounding::{Rounding, shortest_edge};
 pub use sample::{GuardKernels, Sample, sample};
-pub use skins::{SkinState, skin_of};
+pub use skins::{SkinState, skin_of, write_skins};
 pub use tools::{Felt, FreeReading, ToolReading, feel, read_tool, way_of};
-pub use track::Track;
+pub use track::{Track, between, turn_of};
 
 use self::track::Moment;
 use crate::components::*;
@@ -126,9 +126,8 @@ impl Observer {
             .query::<(Entity, &Label, &Probe)>()
             .iter(world)
             .map(|(entity, label, probe)| {
-                // place, and then rotation
-                let turn = matches!(probe.what, crate::scene::schema::Quantity::ToolPose { .. }).then_some(3);
-                ProbeTrack { entity, name: label.0.clone(), track: Track::new(probe.every).with_turn(turn) }
+                let track = Track::new(probe.every).with_turn(turn_of(&probe.what));
+                ProbeTrack { entity, name: label.0.clone(), track }
             })
             .collect();
         probes.sort_by(|a, b| a.name.cmp(&b.name));

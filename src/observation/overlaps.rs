@@ -26,6 +26,8 @@ struct Overlap {
     /// The element of the other body (author's number).
     element: u64,
     at: DVec3,
+    /// How long an edge of the face is (m).
+    edge: f64,
 }
 
 /// A body as it is now.
@@ -108,8 +110,8 @@ impl Kept {
 }
 
 fn message(found: &Overlap, one: &str, other: &str, kept: Kept) -> String {
-    let at = message_at(found.at);
-    let Overlap { node, element, .. } = found;
+    let Overlap { node, element, at, edge } = found;
+    let at = coordinates(*at, *edge);
     format!(
         "{one} and {other} overlap at ({at}) m: the surface of {one} at its node {node} is in element {element} of {other}; {}",
         match kept {
@@ -124,11 +126,6 @@ fn message(found: &Overlap, one: &str, other: &str, kept: Kept) -> String {
                 format!("nothing keeps them apart: `contacts: [Between(bodies: (\"{one}\", \"{other}\"))]` does"),
         }
     )
-}
-
-/// A place (m) as messages say it, to three digits of its largest coordinate at least.
-fn message_at(at: DVec3) -> String {
-    coordinates(at, at.abs().max_element())
 }
 
 fn place(world: &World, entity: Entity) -> Option<Placed<'_>> {
@@ -201,7 +198,7 @@ fn overlap(one: &NearBox, other: &NearBox, of: &Placed<'_>, with: &Placed<'_>) -
                 let node = one.nodes[face.nodes[place % count] as usize];
                 let node = of.authoring.node_ids.of(node as usize);
                 let element = with.authoring.element_ids.of(other.elements[element]);
-                return Some(Overlap { node, element, at: *x });
+                return Some(Overlap { node, element, at: *x, edge: nodes[0].distance(nodes[1]) });
             }
         }
     }

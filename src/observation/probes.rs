@@ -1,5 +1,6 @@
 //! Probes.
 
+use super::fields::reaction;
 use super::heading::Heading;
 use crate::backend::device::bring_to_host;
 use crate::components::*;
@@ -103,11 +104,9 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
     let vector = |reals: Option<&Reals>, row: usize| reals.map_or(DVec3::ZERO, |reals| reals.vector(row));
     let displacement = entity.get::<Displacement>().map(|u| &u.0);
     let step = entity.get::<DisplacementIncrement>().map(|d| &d.0);
-    let internal = entity.get::<InternalForce>().map(|f| &f.0);
-    let external = entity.get::<ExternalForce>().map(|f| &f.0);
-    let force = |row: usize| vector(internal, row) - vector(external, row);
     let rows = || probe.nodes.iter().map(|&row| row as usize);
-    let reaction = || rows().map(force).sum::<DVec3>();
+    let force = |row: usize| reaction(entity, row);
+    let held = || rows().map(force).sum::<DVec3>();
     let rest = entity.get::<RestPosition>();
     let place = |row: usize| rest.map_or(DVec3::ZERO, |rest| rest.0[row]) + vector(displacement, row);
     let arm = |row: usize, center: DVec3| place(row) - back * vector(step, row) - center;
@@ -116,32 +115,45 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
         Quantity::Displacement => mean(&|row| vector(displacement, row)),
         Quantity::Position => mean(&place),
         Quantity::Velocity => mean(&|row| vector(step, row) * rate),
-        Quantity::Reaction => reaction().to_array().to_vec(),
-        Quantity::Force { direction } => vec![reaction().dot(direction.normalize())],
+        Quantity::Reaction => held().to_array().to_vec(),
+        Quantity::Force { direction } => vec![held().dot(direction.normalize())],
         Quantity::Moment { center } => moment(center).to_array().to_vec(),
         Quantity::Torque { center, axis } => vec![moment(center).dot(axis.normalize())],
         Quantity::RemovedVolume => {
             let blocks = entity.get::<Authoring>().map_or(&[][..], |authoring| &authoring.blocks);
             vec![probe.volume - volume_left(blocks, &probe.elements, world)]
         }
-        Quantity::Stress => element_mean(world, body, &probe, |view, row, state| view.cauchy(row, state).to_vec()),
-        _ => element_mean(world, body, &probe, |_, _, state| vec![state.volume_ratio()]),
+        Quantity::Stress => element_mean(world, body, &probe, 0.0, |view, row, state| view.cauchy(row, state).to_vec()),
+        _ => element_mean(world, body, &probe, 1.0, |_, _, state| vec![state.volume_ratio()]),
     })
 }
 
-/// The values themselves, or where the probe holds peaks those of the largest size so far.
-pub fn with_peaks(world: &mut World, probe: Entity, name: &str, values: Vec<f64>) -> Vec<f64> {
-    if !world.get::<Probe>(probe).is_some_and(|probe| probe.peak) {
-        return values;
-    }
-    let mut memory = world.get_resource_or_init::<GuardMemory>();
-    let peaks = memory.probe_peaks.entry(name.to_string()).or_insert_with(|| values.clone());
-    for (peak, value) in peaks.iter_mut().zip(&values) {
-        if value.abs() > peak.abs() {
-            *peak = *value;
+/// The values themselves, or where the probe holds peaks those of the largest size so far, with these.
+pub fn with_peaks(world: &World, probe: Entity, mut values: Vec<f64>) -> Vec<f64> {
+    for (value, peak) in values.iter_mut().zip(peaks_so_far(world, probe).into_iter().flatten()) {
+        if value.abs() <= peak.abs() {
+            *value = *peak;
         }
     }
-    peaks.clone()
+    values
+}
+
+/// The values of the largest size that a probe which holds peaks has seen, if it has seen any: what another one saw
+/// that had its name, before a snapshot, is not its own.
+fn peaks_so_far(world: &World, probe: Entity) -> Option<&Vec<f64>> {
+    let (probe, name) = (world.get::<Probe>(probe).filter(|probe| probe.peak)?, &world.get::<Label>(probe)?.0);
+    let memory = world.get_resource::<GuardMemory>()?;
+    let is_own = memory.probe_peaks_of.get(name).is_none_or(|of| *of == probe.of);
+    memory.probe_peaks.get(name).filter(|peaks| is_own && peaks.len() + 1 == header(&probe.what).len())
+}
+
+/// Notes the values of the largest size so far of a probe that holds peaks.
+pub(super) fn keep_peaks(world: &mut World, probe: Entity, peaks: &[f64]) {
+    let found = world.get::<Probe>(probe).filter(|probe| probe.peak).zip(world.get::<Label>(probe));
+    let Some((of, name)) = found.map(|(probe, name)| (probe.of.clone(), name.0.clone())) else { return };
+    let mut memory = world.get_resource_or_init::<GuardMemory>();
+    memory.probe_peaks_of.insert(name.clone(), of);
+    memory.probe_peaks.insert(name, peaks.to_vec());
 }
 
 /// Volume at rest (m³) of those of some elements that are still there; `elements`: place of the block, and row there.
@@ -154,11 +166,12 @@ pub fn volume_left(blocks: &[Entity], elements: &[(u32, u32)], world: &World) ->
     elements.iter().map(of_element).sum()
 }
 
-/// Mean over the probe's elements that are still there, by rest volume.
+/// Mean over the probe's elements that are still there, by rest volume; where none is, what an undeformed one has.
 fn element_mean(
     world: &World,
     body: Entity,
     probe: &Probe,
+    undeformed: f64,
     of: impl Fn(&BlockView<'_>, usize, &ElementState) -> Vec<f64>,
 ) -> Vec<f64> {
     let length = header(&probe.what).len() - 1;
@@ -177,8 +190,9 @@ fn element_mean(
         }
         volume += state.volume;
     }
-    if volume > 0.0 {
-        sum.iter_mut().for_each(|value| *value /= volume);
+    match volume > 0.0 {
+        true => sum.iter_mut().for_each(|value| *value /= volume),
+        false => sum.fill(undeformed),
     }
     sum
 }

@@ -1,8 +1,8 @@
 //! What is due at a moment goes into tables and frames.
 
-use super::probes::with_peaks;
+use super::probes::{keep_peaks, with_peaks};
 use super::track::{Moment, Row};
-use super::{Observer, energies, observe_probe, overlaps, skins, write_fields, write_whole};
+use super::{Observer, ProbeTrack, energies, observe_probe, overlaps, skins, write_fields, write_whole};
 use crate::components::Clock;
 use crate::error::Error;
 use crate::output::WHOLE;
@@ -24,9 +24,13 @@ impl Observer {
         for place in 0..self.probes.len() {
             if moment.observes(&self.probes[place].track) {
                 let row = self.probe_row(place, world)?;
-                for (time, values) in moment.rows(&self.probes[place].track, &row) {
-                    let probe = &self.probes[place];
-                    let values = with_peaks(world, probe.entity, &probe.name, values);
+                let ProbeTrack { entity, track, .. } = &self.probes[place];
+                let (entity, is_on_time, rows) = (*entity, moment.is_on_time(track), moment.rows(track, &row));
+                for (time, values) in rows {
+                    let values = with_peaks(world, entity, values);
+                    if is_on_time {
+                        keep_peaks(world, entity, &values);
+                    }
                     self.write_probe(place, (time, values))?;
                 }
                 self.probes[place].track.keep(clock.step, row);

@@ -106,13 +106,11 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
                 let at = contacts.numbers_a_tool() * (contacts.tools.len() * place + number);
                 let number = |i: usize| touch.get(at + i);
                 reading.spend(number(5), number(6));
-                // what is left of nodes whose elements are gone is nowhere
-                if mass.get(row) <= 0.0 {
-                    continue;
-                }
                 let end = rest.0[row] - contacts.reference + u.vector(row);
-                // who is outside a ball around all of it is not inside
-                if ball.is_none_or(|(center, radius)| end.distance_squared(center) <= radius * radius) {
+                // who is outside a ball around all of it is not inside; what is left of nodes whose elements are gone
+                // is nowhere, but bore what it bore in the step in which they went
+                let within = |(center, radius): (DVec3, f64)| end.distance_squared(center) <= radius * radius;
+                if mass.get(row) > 0.0 && ball.is_none_or(within) {
                     let distance = contact.geometry.distance(pose.inverse(end)).0;
                     reading.penetration = reading.penetration.max(-distance);
                 }

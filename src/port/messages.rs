@@ -45,7 +45,8 @@ pub struct Touch {
     pub stiffness: f64,
     /// Whether it touched or held anything during the batch, or sucks at something at its end.
     pub in_contact: bool,
-    /// What the batch took on the clock on the wall over its simulated time: above 1 life goes slower than the hand.
+    /// What the batch took on the clock on the wall over its simulated time: above 1 life goes slower than the hand
+    /// (in an [`Advanced`](crate::Advanced) it is the other way round).
     pub real_time_factor: f64,
     /// Its number: 1, 2, 3 ...; 0 before the first.
     pub sequence: u64,

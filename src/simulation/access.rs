@@ -171,7 +171,8 @@ impl Simulation {
         crate::observation::energies(&mut self.world)
     }
 
-    /// What a probe sees at the present step.
+    /// What a probe sees at the present step; of one that holds peaks the values of the largest size of all
+    /// observations so far and of the present step, which does not count as one.
     ///
     /// # Errors
     /// No such probe; what the GPU says.
@@ -184,7 +185,10 @@ impl Simulation {
             .map(|(entity, label)| (entity, label.0.clone()))
             .collect();
         match probes.iter().find(|(_, label)| label == name) {
-            Some((probe, _)) => crate::observation::observe_probe(&mut self.world, *probe),
+            Some((probe, _)) => {
+                let seen = crate::observation::observe_probe(&mut self.world, *probe)?;
+                Ok(crate::observation::with_peaks(&self.world, *probe, seen))
+            }
             None => {
                 let names: Vec<&str> = probes.iter().map(|(_, label)| label.as_str()).collect();
                 Err(Error::Options(format!("there is no probe named {name:?}; there is {}", names.join(", "))))

@@ -9,16 +9,19 @@
 
 use super::Simulation;
 use super::damped_step::square_with_damping;
-use super::follow::Follower;
+use super::follow::{Follower, step_of};
 use super::frequency::{PRODUCT, bodies, largest_near};
+use super::load_rates::LoadRates;
 use super::nodal;
 use super::stiffness::StabilitySample;
 use super::tangent::Tangent;
 use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::{Criterion, Error, Instability};
+use crate::scene::schema::WhenUnstable;
 
-/// Larger by less is not worth a change: when the highest frequency has been found; and by bounds, which come and go.
+/// Larger by less is not worth a change: when the highest frequency has been found, or a hand has let go; and by
+/// bounds, which come and go.
 const LARGER: (f64, f64) = (1.05, 2.0);
 /// A step so many times the wanted one is made smaller.
 const SMALLER: f64 = 1.25;
@@ -59,14 +62,16 @@ impl Simulation {
         let limit = follower.step_of(seen.square);
         let stable = follower.wanted(limit, seen);
         if gives_up(follower, seen) {
-            return Err(self.too_small(follower, stable));
+            return Err(self.too_small(follower, stable, seen));
         }
         let seen_to_come = follower.seen_to_come(stable, seen, &clock);
         let in_the_end = stable.min(seen_to_come);
         let wanted = in_the_end.min(LONGER * clock.time_step);
         let smaller = clock.time_step > follower.most() * limit || clock.time_step > SMALLER * wanted;
-        let change = smaller || wanted >= if finds { LARGER.0 } else { LARGER.1 } * clock.time_step;
+        let lasts = finds || follower.found.eased;
+        let change = smaller || wanted >= if lasts { LARGER.0 } else { LARGER.1 } * clock.time_step;
         let taken = if change { wanted } else { clock.time_step };
+        follower.found.eased &= smaller || stable >= LARGER.0 * taken;
         let hoped_for = follower.hoped_for(seen, &clock);
         follower.found.losing = if hoped_for < LARGER.0 * taken { 0.0 } else { 1.0 - taken / hoped_for };
         if !change {
@@ -108,7 +113,7 @@ impl Simulation {
     }
 
     /// The stable step has gone to nothing.
-    fn too_small(&self, follower: &mut Follower, wanted: f64) -> Error {
+    fn too_small(&self, follower: &mut Follower, wanted: f64, seen: &StabilitySample) -> Error {
         let worst = follower.trackers.iter_mut().flat_map(|block| {
             let elements = block.now(&self.world).into_iter();
             elements.map(|(row, square, _)| (square, block.entity, row))
@@ -116,27 +121,37 @@ impl Simulation {
         let worst = worst.max_by(|a, b| a.0.total_cmp(&b.0));
         let named = worst.and_then(|(_, entity, row)| crate::assembly::author_of(&self.world, entity, row));
         let (body, element) = named.unwrap_or_default();
+        let bodies = follower.safety * step_of(seen.square);
+        let by_loads = bodies >= LEAST * follower.first;
+        let worst = match by_loads {
+            true => format!("forces on nodes are so stiff, a grip's or a load's: without them it is {bodies:.3e} s"),
+            false => format!("element {element} is deformed most"),
+        };
+        let cause = match self.world.resource::<Signals>().have_jumped(self.time()) {
+            _ if by_loads => {
+                "a grip or a load that is too stiff for the mass of its nodes (hold more softly, or scale it down)"
+            }
+            true => "a prescribed motion that jumps (use a ramp: `curve: Smooth(end: ...)` or `Ramp(end: ...)`)",
+            false => {
+                "tissue that is squeezed flat or stiffens without end (remove such elements by VolumeRatioBelow, or \
+                 when_unstable: Remove)"
+            }
+        };
         Error::Unstable(Box::new(Instability {
             time: self.time(),
             step: self.step_count(),
             body,
             what: format!(
-                "the stable step has shrunk to {wanted:.3e} s, less than a {:.0}th of {:.3e} s at the start; element \
-                 {element} is deformed most",
+                "the stable step has shrunk to {wanted:.3e} s, less than a {:.0}th of {:.3e} s at the start; {worst}",
                 1.0 / LEAST,
                 follower.first
             ),
-            cause: match self.world.resource::<Signals>().have_jumped(self.time()) {
-                true => "a prescribed motion that jumps (use a ramp: `curve: Smooth(end: ...)` or `Ramp(end: ...)`)".into(),
-                false => "tissue that is squeezed flat or stiffens without end (remove such elements by VolumeRatioBelow, or \
-                          when_unstable: Remove)"
-                    .into(),
-            },
+            cause: cause.into(),
             good_until: self.time(),
             criterion: Criterion {
                 value: Some(wanted),
                 limit: Some(LEAST * follower.first),
-                element: Some(element),
+                element: (!by_loads).then_some(element),
                 ..Criterion::of("step")
             },
             last_good: None,
@@ -145,6 +160,12 @@ impl Simulation {
 }
 
 impl Follower {
+    /// The stable step with such forces on nodes (s), where a run would end for it.
+    pub(super) fn gives_up_with(&self, loads: &LoadRates) -> Option<f64> {
+        let limit = loads.with(step_of(self.found.known.max(self.found.latest)));
+        (self.policy == WhenUnstable::Adapt && self.safety * limit < LEAST * self.first).then_some(limit)
+    }
+
     /// The step that could be taken were the highest frequency found anew, as far as that can be guessed: were nothing
     /// stiffer than when it was found, and less so what has become less stiff (s).
     fn hoped_for(&self, seen: &StabilitySample, clock: &Clock) -> f64 {

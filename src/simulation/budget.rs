@@ -36,7 +36,8 @@ pub enum Ended {
 }
 
 impl Advanced {
-    /// Simulated seconds a second on the wall: 1 keeps up with life.
+    /// Simulated seconds a second on the wall: 1 keeps up with life, more is faster. That of a
+    /// [`Summary`](super::Summary) and of a [`Touch`](crate::port::Touch) is the other way round.
     pub fn real_time_factor(&self) -> f64 {
         self.simulated / self.took.as_secs_f64()
     }
@@ -45,7 +46,8 @@ impl Advanced {
 impl Simulation {
     /// Takes as many steps as fit into a budget of time on the clock on the wall, at least one, until the clock shows
     /// at least `until` (s; infinite: as long as the budget lasts, also beyond the end of the scene). How long a step
-    /// takes is measured. Bits depend on the steps alone, not on what they took.
+    /// takes is measured. Bits depend on the steps alone, not on what they took. Who gives a budget keeps the pace:
+    /// `real_time: true` of a scene waits for nothing here.
     ///
     /// # Errors
     /// As [`Simulation::advance`]; that `until` is no number.
@@ -53,6 +55,13 @@ impl Simulation {
         if until.is_nan() {
             return Err(Error::Options("steps cannot be taken until a time that is no number".into()));
         }
+        self.metronome.stand_aside(true);
+        let advanced = self.steps_within(budget, until);
+        self.metronome.stand_aside(false);
+        advanced
+    }
+
+    fn steps_within(&mut self, budget: Duration, until: f64) -> Result<Advanced, Error> {
         let started = Instant::now();
         self.settle()?;
         let (first, from) = (self.step_count(), self.time());
@@ -73,7 +82,7 @@ impl Simulation {
             if left == 0 {
                 break Ended::Reached;
             }
-            let (batch, waited) = (Instant::now(), self.metronome.waited());
+            let batch = Instant::now();
             self.advance(fits.clamp(1, left))?;
             if let Some(mut device) = self.world.get_resource_mut::<Device>() {
                 device.gpu().wait()?;
@@ -83,8 +92,7 @@ impl Simulation {
             if steps == 0 {
                 break Ended::Rest;
             }
-            let solving = took.saturating_sub(self.metronome.waited().saturating_sub(waited));
-            let each = solving.as_secs_f64() / steps as f64;
+            let each = took.as_secs_f64() / steps as f64;
             self.seconds_a_step = Some(self.seconds_a_step.map_or(each, |before| 0.5 * (before + each)));
         };
         Ok(Advanced {

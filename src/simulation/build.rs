@@ -193,6 +193,7 @@ impl Simulation {
             ports: super::ports::Ports::of(&scene.scene),
             metronome: Default::default(),
             history: History::default(),
+            restored: 0,
             surfaces: Default::default(),
             grabs: Default::default(),
             next_grab: 0,

@@ -96,6 +96,9 @@ pub(super) struct Found {
     /// What forces on nodes make of the step, where that has been counted anew since the start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub loads: Option<LoadRates>,
+    /// Whether forces on nodes have become less stiff since the step last grew to what is stable.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub eased: bool,
     /// ω² of all bodies at most when it was checked last (1/s²); 0: not yet.
     #[serde(default)]
     pub latest: f64,
@@ -157,6 +160,7 @@ impl Follower {
                 quickened: 0,
                 quickens_at: None,
                 loads: None,
+                eased: false,
                 latest: 0.0,
                 changed: None,
                 own: integration.step,
@@ -243,6 +247,12 @@ impl Follower {
         if quickens {
             self.found.quickened = step;
         }
+    }
+
+    /// Forces on nodes are less stiff from here on: the step may grow.
+    pub fn ease(&mut self) {
+        self.found.eased = true;
+        self.check_soon();
     }
 
     /// Checks before the next step.

@@ -114,8 +114,9 @@ impl Simulation {
     /// Their work is that of loads in the balance of energy, and their stiffness counts for the stable step.
     ///
     /// # Errors
-    /// [`Options::grabs`](super::Options::grabs) is not set; a static analysis; a grip that is no positive number, or
-    /// too stiff for a step that the scene insists on; too many nodes held; what the GPU says.
+    /// [`Options::grabs`](super::Options::grabs) is not set; a static analysis; a grip that is no positive number, too
+    /// stiff for a step that the scene insists on, or for any that a run goes on with; too many nodes held; what the
+    /// GPU says.
     pub fn grab(&mut self, pick: &Pick, grip: &Grip) -> Result<GrabId, Error> {
         let nodes = [0, 1, 2].map(|i| (pick.nodes[i] as usize, pick.weights[i].max(0.0)));
         self.grab_nodes(&pick.body, &nodes, grip)
@@ -239,7 +240,11 @@ impl Simulation {
         let body = self.body(&grab.body)?;
         self.put_grabs(body)?;
         self.note_grab(id);
-        self.count_loads()
+        self.count_loads()?;
+        if let Some(follower) = self.solver.follower_mut() {
+            follower.ease();
+        }
+        Ok(())
     }
 
     /// All that is held.
@@ -315,6 +320,12 @@ impl Simulation {
     fn is_stable_with_grabs(&mut self) -> Result<(), Error> {
         self.count_loads()?;
         let loads = self.solver.follower().map(Follower::loads).unwrap_or_default();
+        if let Some(limit) = self.solver.follower().and_then(|follower| follower.gives_up_with(&loads)) {
+            return Err(Error::Options(format!(
+                "with so stiff a grip the stable step is {limit:.3e} s, so short that a run ends for it: hold more softly \
+                 (`stiffness` left out suits any step)"
+            )));
+        }
         self.fits_the_step(&loads).map_err(|limit| {
             let step = self.time_step();
             Error::Options(format!(

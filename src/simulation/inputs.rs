@@ -176,9 +176,9 @@ impl Simulation {
         self.tape.recording.take()
     }
 
-    /// Replays a recording: each change is made when its step begins. What is set meanwhile counts until the next
-    /// recorded change of the same input; of several changes of an input at one step the last counts. An empty
-    /// recording ends replaying, and so does going back.
+    /// Replays a recording: each change is made when its step begins. What was set before and not taken up yet is
+    /// forgotten. What is set meanwhile counts until the next recorded change of the same input; of several changes of
+    /// an input at one step the last counts. An empty recording ends replaying, and so does going back.
     ///
     /// # Errors
     /// A recording that began at another step than the present one (restore the snapshot of that step first); inputs
@@ -216,6 +216,10 @@ impl Simulation {
             changes.push(change.clone());
         }
         self.tape.poses = self.checked_poses(&recording.poses)?;
+        // what the recorded run took up of it is in the recording
+        if !(recording.changes.is_empty() && recording.poses.is_empty()) {
+            self.world.resource_mut::<Signals>().inputs_mut().iter_mut().for_each(Input::withdraw);
+        }
         self.tape.replayed = changes;
         Ok(())
     }

@@ -36,6 +36,7 @@ impl Simulation {
         self.keep_start();
         let state = self.checked_resume_state(snapshot)?;
         self.world.increment_change_tick();
+        self.restored += 1;
         let before = self.step_count();
         snapshot.put(&mut self.world)?;
         (self.settling, self.preload) = (None, None);
@@ -50,6 +51,13 @@ impl Simulation {
         observer.window.clear();
         observer.writing = Duration::ZERO;
         Ok(())
+    }
+
+    /// How often it has gone over to another state otherwise than by steps: by [`restore`](Self::restore),
+    /// [`reset`](Self::reset) or [`rewind`](Self::rewind). Where this is another number, what was read of the state is
+    /// old, also at the same step and with as many elements.
+    pub fn times_restored(&self) -> u64 {
+        self.restored
     }
 
     /// What the guards have seen so far: the largest imbalance of energy, hourglass energies, the smallest J, the

@@ -3,6 +3,7 @@
 mod access;
 mod adapt;
 mod added_mass;
+mod asked;
 mod block_forces;
 mod budget;
 mod build;
@@ -132,6 +133,8 @@ pub struct Simulation {
     lineage: lineage::Lineage,
     /// States to go back to.
     history: history::History,
+    /// How often it has gone over to another state otherwise than by steps.
+    restored: u64,
     /// What a step takes on the clock on the wall (s), where that was measured.
     seconds_a_step: Option<f64>,
     elapsed: Duration,

@@ -175,7 +175,7 @@ impl Simulation {
                 continue;
             }
             let felt = feel(&mut self.world, &port.used.tool, state.ends - state.begins)?;
-            state.end(felt, clock.step);
+            state.end(&port.word, felt, clock.step);
             port.used.batches += 1;
             let Some(end) = &mut port.end else { continue };
             port.told += 1;

@@ -19,10 +19,14 @@ use crate::systems::Registry;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use serde::Serialize;
+use std::ops::ControlFlow;
+use std::time::Duration;
 use web_time::Instant;
 
-/// Pseudo-steps after which it is told how far the search for rest is.
+/// Pseudo-steps after which it is told how far the search for rest is, at most.
 const TOLD: u64 = 400;
+/// The time in which that is told, as well as it can be: who is told may want an end.
+const WAITED: Duration = Duration::from_millis(50);
 /// How often rest is sought anew because the step of the motion has become another.
 const RENEWALS: u32 = 4;
 
@@ -105,22 +109,28 @@ impl Simulation {
     /// # Errors
     /// That there is no equilibrium, or none was found; what the GPU says. Then no step is taken.
     pub fn settle(&mut self) -> Result<(), Error> {
-        self.settle_telling(|_, _| {})
+        self.settle_telling(|_, _| ControlFlow::Continue(())).map(|_| ())
     }
 
-    /// The same, and tells again and again how far it is: the pseudo-steps so far, and what they have come to.
+    /// The same, and tells again and again how far it is: the pseudo-steps so far, and what they have come to, whose
+    /// residual is infinite until it is first looked at. Who is told may break it off: then no step is taken, and the
+    /// search goes on when a state is asked for.
     ///
     /// # Errors
     /// As [`Simulation::settle`].
     #[doc(hidden)]
-    pub fn settle_telling(&mut self, mut tell: impl FnMut(u64, &Equilibrium)) -> Result<(), Error> {
-        let Some(mut analysis) = self.settling.take() else { return Ok(()) };
+    pub fn settle_telling(
+        &mut self,
+        mut tell: impl FnMut(u64, &Equilibrium) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, Error> {
+        let Some(mut analysis) = self.settling.take() else { return Ok(ControlFlow::Continue(())) };
         let started = Instant::now();
         for turn in 0..=RENEWALS {
-            if let Err(error) = analysis.find_equilibrium(&mut tell) {
+            let found = analysis.find_equilibrium(&mut tell);
+            if !matches!(found, Ok(ControlFlow::Continue(()))) {
                 // who asks again gets no motion from elsewhere
                 self.settling = Some(analysis);
-                return Err(at_start(error));
+                return found.map_err(at_start);
             }
             self.stand_as(&mut analysis.world)?;
             let Some(step) = self.other_step(&analysis)?.filter(|_| turn < RENEWALS) else { break };
@@ -129,7 +139,7 @@ impl Simulation {
         let equilibrium = analysis.equilibrium().cloned().unwrap_or_default();
         let steps = analysis.step_count();
         self.preload = Some(Preload { equilibrium, steps, seconds: started.elapsed().as_secs_f64() });
-        Ok(())
+        Ok(ControlFlow::Continue(()))
     }
 
     /// What settling took; `None` where it was not asked for or has not been done yet.
@@ -147,11 +157,19 @@ impl Simulation {
         Ok((step != springs.step).then_some(step))
     }
 
-    fn find_equilibrium(&mut self, tell: &mut impl FnMut(u64, &Equilibrium)) -> Result<(), Error> {
+    fn find_equilibrium(
+        &mut self,
+        tell: &mut impl FnMut(u64, &Equilibrium) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, Error> {
+        let mut count = 1;
         while !self.is_finished() && self.step_count() < self.planned_steps() {
-            self.advance_towards_end(TOLD)?;
-            if let Some(found) = self.equilibrium() {
-                tell(self.step_count(), found);
+            let started = Instant::now();
+            self.advance_towards_end(count)?;
+            count = if started.elapsed() < WAITED { TOLD.min(2 * count) } else { (count / 2).max(1) };
+            if let Some(found) = self.equilibrium()
+                && tell(self.step_count(), found).is_break()
+            {
+                return Ok(ControlFlow::Break(()));
             }
         }
         match self.equilibrium() {
@@ -161,7 +179,7 @@ impl Simulation {
                 equilibrium: found.clone(),
                 at_start: true,
             }))),
-            _ => Ok(()),
+            _ => Ok(ControlFlow::Continue(())),
         }
     }
 

@@ -28,6 +28,8 @@ pub(super) struct Metronome {
     from: Option<(Instant, f64)>,
     /// The step before which it is checked again.
     next: u64,
+    /// Whether the program keeps the pace itself.
+    stands_aside: bool,
     kept: RealTime,
 }
 
@@ -40,6 +42,11 @@ impl Metronome {
     /// Time waited so far.
     pub fn waited(&self) -> Duration {
         Duration::from_secs_f64(self.kept.waited)
+    }
+
+    /// The program keeps the pace itself, or no longer: life goes on from where the simulation is then.
+    pub fn stand_aside(&mut self, stands_aside: bool) {
+        (self.stands_aside, self.from) = (stands_aside, None);
     }
 
     /// How long to wait at a simulated time (s).
@@ -62,7 +69,7 @@ impl Simulation {
     /// Waits until life is where the simulation is, if the scene asks for that.
     pub(super) fn wait_for_real_time(&mut self) {
         let clock = *self.world.resource::<Clock>();
-        if !self.scene.real_time || clock.relaxation.is_some() {
+        if !self.scene.real_time || self.metronome.stands_aside || clock.relaxation.is_some() {
             return;
         }
         let tick = steps_of(TICK, clock.time_step);
@@ -82,7 +89,8 @@ impl Simulation {
 
     /// The step before which the pace is checked again.
     pub(super) fn next_tick(&self) -> u64 {
-        if self.scene.real_time { self.metronome.next.max(self.step_count() + 1) } else { u64::MAX }
+        let waits = self.scene.real_time && !self.metronome.stands_aside;
+        if waits { self.metronome.next.max(self.step_count() + 1) } else { u64::MAX }
     }
 }
 

@@ -28,11 +28,26 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn advance_to(&mut self, time: f64) -> Result<(), Error> {
+        self.advance_towards(time, u64::MAX).map(drop)
+    }
+
+    /// The same in at most `most` steps; whether there may be more to take.
+    #[doc(hidden)]
+    pub fn advance_towards(&mut self, time: f64, most: u64) -> Result<bool, Error> {
         self.settle()?;
+        let end = self.step_count().saturating_add(most);
         loop {
+            let step = self.step_count();
+            if step >= end {
+                return Ok(true);
+            }
             match self.steps_left_to(time)? {
-                0 => return Ok(()),
-                left => self.advance(left)?,
+                0 => return Ok(false),
+                left => self.advance(left.min(end - step))?,
+            }
+            // a static analysis is at rest
+            if self.step_count() == step {
+                return Ok(false);
             }
         }
     }

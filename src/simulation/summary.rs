@@ -56,7 +56,8 @@ pub struct Summary {
     pub solving_seconds: f64,
     /// Of it what observing and writing took: tables, fields, snapshots, `nodes.csv` (s).
     pub writing_seconds: f64,
-    /// Solving time over simulated time; below 1 is faster than real time.
+    /// Solving time over simulated time; below 1 is faster than real time (in an [`Advanced`](super::Advanced) it is
+    /// the other way round).
     pub real_time_factor: f64,
     /// How long frames of 10 ms of life took.
     pub frames: Option<super::Frames>,

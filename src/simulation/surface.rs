@@ -10,7 +10,7 @@ impl Simulation {
     /// Triangles of a body's surface: places in [`displacements`](Simulation::displacements) and
     /// [`rest_positions`](Simulation::rest_positions), counter-clockwise seen from outside. A quadrilateral is two of
     /// them; faces that removed elements lay bare count. They change only when [`elements_left`](Self::elements_left)
-    /// does.
+    /// or [`times_restored`](Self::times_restored) does.
     ///
     /// # Errors
     /// No such body; what the GPU says.

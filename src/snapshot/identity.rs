@@ -12,7 +12,7 @@ use std::hash::Hasher;
 use twox_hash::XxHash64;
 
 /// Hashes of a simulation's parts as texts, by the part's name in scenes. Titles, probes, outputs, pictures and guards
-/// are no parts: they may differ.
+/// are no parts: they may differ, but for what they have work counted for, which is in the columns of the state.
 pub type Identity = BTreeMap<String, String>;
 
 const MESHES: &str = "meshes (with their named sets and fields)";
@@ -156,7 +156,8 @@ fn sets_in_use(world: &mut World) -> u64 {
     XxHash64::oneshot(0, bytes(&all))
 }
 
-fn of_text<T: Serialize>(part: &T) -> u64 {
+/// A hash of a part of a scene as it would be written.
+pub(crate) fn of_text<T: Serialize>(part: &T) -> u64 {
     // what cannot be written has no part in two scenes being the same
     XxHash64::oneshot(0, ron::to_string(part).unwrap_or_default().as_bytes())
 }

@@ -15,6 +15,8 @@ mod state_columns;
 pub use error::SnapshotError;
 pub use packed::PackedSnapshot;
 
+pub(crate) use identity::of_text as hash_of;
+
 #[doc(hidden)]
 pub use format::VERSION;
 #[doc(hidden)]
@@ -277,6 +279,17 @@ fn put(snapshot: &Snapshot, world: &mut World, keeping: &Keeping) -> Result<(), 
     send_to_device(world, ours)
 }
 
+/// Which work is counted where there are columns of some names, and why: what is counted is a part of the state.
+fn counted(has: &dyn Fn(&str) -> bool) -> &'static str {
+    if has(Work::NAME) {
+        "all work is counted, as `output` names `energies_every`"
+    } else if has(InternalWork::NAME) {
+        "work is counted for the guard `Energy` alone, as `output` does not name `energies_every`"
+    } else {
+        "no work is counted, as `guards` has `Energy` in `off` and `output` does not name `energies_every`"
+    }
+}
+
 /// Whether a snapshot fits a world in all that can be compared.
 fn check(
     snapshot: &Snapshot,
@@ -297,6 +310,11 @@ fn check(
     if !head.systems.keys().eq(keeping.systems.keys()) {
         let (theirs, here) = (names(head.systems.keys().collect()), names(keeping.systems.keys().collect()));
         return foreign(format!("it keeps the state of the systems [{theirs}], here there are [{here}]"));
+    }
+    let theirs = counted(&|name| head.columns.iter().any(|column| column.name == name));
+    let here = counted(&|name| columns.iter().any(|column| column.access.name == name));
+    if theirs != here {
+        return foreign(format!("there {theirs}, here {here}"));
     }
     if head.columns.len() != columns.len() {
         return foreign(format!("it has {} columns, here there are {}", head.columns.len(), columns.len()));

@@ -183,6 +183,28 @@ fn a_stiff_hand_is_stable_where_the_step_follows_and_refused_where_it_does_not()
     }
 }
 
+/// A step that had become shorter for a stiff grip is as long as before when the hand has let go.
+#[test]
+fn the_step_grows_again_when_a_stiff_hand_lets_go() {
+    for run in configurations() {
+        let mut simulation = start(&run, &cube(STIFF));
+        let first = simulation.time_step();
+        let gentle = grab(&mut simulation, &Grip::default());
+        let stiffness = simulation.grabs().next().unwrap().1.stiffness;
+        simulation.release(gentle).unwrap();
+        for times in [600.0, 1600.0, 20000.0] {
+            let hand = grab(&mut simulation, &Grip { stiffness: Some(times * stiffness), ..Grip::default() });
+            simulation.advance_to(simulation.time() + 0.05).unwrap();
+            let held = simulation.time_step();
+            assert!(held < 0.92 * first, "{}: {held} of {first}", run.name);
+            simulation.release(hand).unwrap();
+            simulation.advance_to(simulation.time() + 0.2).unwrap();
+            let after = simulation.time_step();
+            assert!(after > 0.94 * first, "{}, {times}: {held}, then {after} of {first}", run.name);
+        }
+    }
+}
+
 #[test]
 fn what_cannot_be_held_says_why() {
     let run = &configurations()[0];
@@ -200,6 +222,10 @@ fn what_cannot_be_held_says_why() {
     ] {
         assert!(told(simulation.grab(&pick, &grip)).contains("must be above 0"), "{grip:?}");
     }
+    // no step is left with that
+    let stiff = told(simulation.grab(&pick, &Grip { stiffness: Some(1e30), ..Grip::default() }));
+    assert!(stiff.contains("so stiff a grip") && stiff.contains("hold more softly"), "{stiff}");
+    simulation.advance(3).unwrap();
     assert!(told(simulation.grab_nodes("b", &[(99, 1.0)], &Grip::default())).contains("99"));
     assert!(told(simulation.grab_nodes("b", &[(0, -1.0)], &Grip::default())).contains("0 or above"));
     let edge = [(0, 0.5), (1, 0.5)];

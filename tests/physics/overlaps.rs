@@ -115,15 +115,23 @@ fn elements_that_are_gone_overlap_with_nothing() {
     }
 }
 
-/// Cubes of 20 μm, half in each other.
-#[test]
-fn where_small_bodies_overlap_is_told_with_the_digits_that_it_takes() {
-    let cells = [(1, 2e-5, [0.0; 3]), (1, 2e-5, [1e-5, 0.0, 0.0])];
-    let told = warned(&configurations()[0].options, "Hex8", &cells, "");
+/// The largest coordinate in the only message (m).
+fn farthest(told: &[Notice]) -> f64 {
     assert_eq!(told.len(), 1, "{told:?}");
     let at = told[0].message.split(['(', ')']).nth(1).unwrap();
-    let largest = at.split(", ").map(|x| x.parse::<f64>().unwrap()).fold(0.0, f64::max);
-    assert!((0.9e-5..2.1e-5).contains(&largest), "{told:?}");
+    at.split(", ").map(|x| x.parse::<f64>().unwrap()).fold(0.0, f64::max)
+}
+
+/// Cubes of 20 μm, half in each other, and a bead of 1 μm in one of 40, a metre from the origin.
+#[test]
+fn where_small_bodies_overlap_is_told_with_the_digits_that_it_takes() {
+    let run = configurations().remove(0);
+    let told = warned(&run.options, "Hex8", &[(1, 2e-5, [1.0, 0.0, 0.0]), (1, 2e-5, [1.00001, 0.0, 0.0])], "");
+    assert!((0.9e-5..2.1e-5).contains(&(farthest(&told) - 1.0)), "{told:?}");
+    let bead = "tools: {\"bead\": (shape: Sphere(radius: 1e-6), at: (1.00001, 1e-5, 1e-5))},
+        contacts: [Tool(tool: \"bead\", thin: true)]";
+    let told = warned(&run.options, "Hex8", &[(2, 4e-5, [1.0, 0.0, 0.0])], bead);
+    assert!((0.8e-5..1.2e-5).contains(&(farthest(&told) - 1.0)), "{told:?}");
 }
 
 /// A bead, narrower than faces are, is driven into a coarse block between its nodes, which contact does not see.

@@ -236,3 +236,20 @@ fn a_run_in_real_time_waits_for_life_and_has_the_same_bits() {
         assert!(summary.solving_seconds + kept.waited <= summary.run_seconds + 1e-9, "{}: {kept:?}", run.name);
     }
 }
+
+/// Who gives a budget keeps the pace: nothing is waited for, and who asks for no budget later waits from there on.
+#[test]
+fn steps_in_a_budget_do_not_wait_for_life() {
+    let run = &configurations()[0];
+    let mut simulation = run.start(&above("speed: 0.3").replacen("(duration", "(real_time: true, duration", 1));
+    let advanced = simulation.advance_for(Duration::from_secs(3600), 0.1).unwrap();
+    assert_eq!(advanced.why, sinew::Ended::Reached);
+    let kept = simulation.summary("finished").unwrap().real_time.unwrap();
+    assert_eq!((kept.ticks, kept.waited), (0, 0.0));
+    let started = Instant::now();
+    simulation.advance_to(0.12).unwrap();
+    // neither the first tick nor the last is waited for
+    assert!(started.elapsed() >= Duration::from_secs_f64(0.017), "{:?}", started.elapsed());
+    let kept = simulation.summary("finished").unwrap().real_time.unwrap();
+    assert!(kept.ticks >= 15 && kept.waited < 0.1, "{kept:?}");
+}

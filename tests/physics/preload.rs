@@ -11,6 +11,7 @@ use crate::configurations::{Configuration, configurations, cpu_and_long_gpu, nea
 use crate::element_turns::with_elements;
 use crate::grids::bits;
 use sinew::{Error, Simulation, Snapshot};
+use std::ops::ControlFlow;
 use std::path::Path;
 
 /// A block with fibres, viscosity and gravity, squeezed by a pressure and by nodes that are moved already; `further`
@@ -267,10 +268,34 @@ fn how_far_the_search_for_the_start_is_is_told_on_the_way() {
     let run = &configurations()[0];
     let mut simulation = run.start(&block("Tet4", "start: Equilibrium(),", "", ""));
     let mut told: Vec<(u64, f64)> = Vec::new();
-    simulation.settle_telling(|steps, found| told.push((steps, found.residual))).unwrap();
+    let ended = simulation.settle_telling(|steps, found| {
+        told.push((steps, found.residual));
+        ControlFlow::Continue(())
+    });
+    assert!(ended.unwrap().is_continue());
+    // until it is first looked at
+    let told: Vec<_> = told.into_iter().skip_while(|(_, residual)| residual.is_infinite()).collect();
     let preload = simulation.preload().unwrap();
     assert!(told.is_sorted_by(|a, b| a.0 < b.0) && told.iter().all(|(_, residual)| residual.is_finite()), "{told:?}");
     assert_eq!(told.last().unwrap(), &(preload.steps, preload.equilibrium.residual));
     // it is at rest, and nothing is left to tell
-    simulation.settle_telling(|steps, _| panic!("told anew, of {steps} steps")).unwrap();
+    let ended = simulation.settle_telling(|steps, _| panic!("told anew, of {steps} steps"));
+    assert!(ended.unwrap().is_continue());
+}
+
+/// Who is told may break it off: no state is there then, and who asks for one has the search go on, to the same place.
+#[test]
+fn the_search_for_the_start_can_be_broken_off_and_goes_on() {
+    let run = &configurations()[0];
+    let start = || run.start(&block("Tet4", "start: Equilibrium(),", "", ""));
+    let (mut whole, mut broken_off) = (start(), start());
+    let mut at = 0;
+    let ended = broken_off.settle_telling(|steps, _| {
+        at = steps;
+        ControlFlow::Break(())
+    });
+    assert!(ended.unwrap().is_break() && at > 0 && broken_off.preload().is_none());
+    assert!(bits(&mut broken_off, "b") == bits(&mut whole, "b"));
+    let [again, at_once] = [&broken_off, &whole].map(|simulation| simulation.preload().unwrap().steps);
+    assert!(again == at_once && at < at_once, "{at} steps, {again}, {at_once}");
 }

@@ -4,6 +4,8 @@
 use crate::columns::{internal_forces, positions};
 use crate::configurations::{configurations, near, scene_of};
 use sinew::glam::DVec3;
+use sinew::observation::field_of;
+use sinew::scene::schema::OutputField;
 use sinew::{BackendChoice, Options, Simulation};
 use std::path::Path;
 
@@ -137,10 +139,96 @@ fn peaks_stay_when_motion_goes_back() {
         let observer = simulation.world().resource::<sinew::observation::Observer>();
         let (top, peak) = (observer.latest["top"].1[2], observer.latest["peak"].1[2]);
         assert!(peak == largest && peak.abs() > 1.05 * top.abs(), "{}: {peak}, {largest}, {top}", configuration.name);
+        // who asks for it is told the same
+        let asked = ["peak", "top"].map(|name| simulation.probe(name).unwrap()[2]);
+        assert_eq!(asked, [peak, top], "{}", configuration.name);
         let mut other = configuration.start(text);
         other.restore(&kept.unwrap()).unwrap();
         other.finish().unwrap();
         let again = other.world().resource::<sinew::observation::Observer>().latest["peak"].1[2];
         assert_eq!(again, peak, "{}: the peak before the snapshot is forgotten", configuration.name);
+    }
+}
+
+/// A block that begins to sag, with a probe of something and one of its peak.
+fn sagging(of: &str, every: f64) -> String {
+    format!(
+        "(duration: 0.3, integration: (step: 7e-4),
+        bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2), elements: Hex8), material: \"m\")}},
+        materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.3))}},
+        constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))], loads: [Gravity(acceleration: (0, 0, -5))],
+        probes: {{\"now\": ({of}, every: {every}), \"most\": ({of}, every: {every}, peak: true)}})"
+    )
+}
+
+const TOP: &str = "on: Plane(normal: (0, 0, 1), at: 0.1)";
+
+/// What goes on from a snapshot under the name of another probe begins anew, with as many numbers as that and with
+/// others.
+#[test]
+fn peaks_of_another_probe_are_not_gone_on_with() {
+    let run = &configurations()[1];
+    let start = |of: &str| run.start(&sagging(of, 1e-3));
+    let mut first = start(&format!("what: Displacement, {TOP}"));
+    first.advance_to(0.02).unwrap();
+    let kept = first.snapshot().unwrap();
+    assert!(first.probe("most").unwrap()[2] < -5e-4);
+    let others = ["what: VolumeRatio, on: All", "what: Displacement, on: Plane(normal: (0, 0, 1), at: 0.05)"];
+    for of in others.map(String::from).into_iter().chain([format!("what: Velocity, {TOP}")]) {
+        let mut other = start(&of);
+        other.restore(&kept).unwrap();
+        other.observe().unwrap();
+        let now = other.probe("now").unwrap();
+        assert_eq!(other.probe("most").unwrap(), now, "{of}");
+        other.advance(30).unwrap();
+        assert_eq!(other.guards().probe_peaks["most"].len(), now.len(), "{of}");
+    }
+}
+
+/// A run that goes on from the end of a step within which a time lies that is asked for: what it sees there is in no
+/// row of the whole run, and in no peak.
+#[test]
+fn a_run_that_goes_on_has_the_peaks_of_the_whole_one() {
+    for run in configurations() {
+        let text = sagging(&format!("what: Displacement, {TOP}"), 1e-3);
+        let mut whole = run.start(&text);
+        whole.observe().unwrap();
+        // 2.1 ms
+        whole.advance(3).unwrap();
+        let (kept, peaks) = (whole.snapshot().unwrap(), whole.guards().probe_peaks);
+        let seen = whole.probe("now").unwrap()[2];
+        let most = peaks["most"][2];
+        assert!(seen < most && most < 0.0, "{}: it sinks: {most} m at 2 ms, {seen} m after that", run.name);
+        let mut other = run.start(&text);
+        other.restore(&kept).unwrap();
+        other.observe().unwrap();
+        assert_eq!(other.guards().probe_peaks, peaks, "{}", run.name);
+    }
+}
+
+/// A block that slides on a plane and sinks into it, all of it looked at: what holds it holds it up, and nothing holds
+/// it along the plane, where its own inertia does; the field says the same.
+#[test]
+fn nothing_holds_nodes_along_free_axes() {
+    let text = r#"(duration: 0.1, integration: (step: 5e-4),
+        bodies: {"b": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2), elements: Hex8), material: "m",
+            velocity: (0.1, 0, -0.1))},
+        materials: {"m": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.3))},
+        constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0), axes: [Z])],
+        loads: [Gravity(acceleration: (3, 0, -5))],
+        probes: {"all": (what: Reaction, on: All), "along": (what: Force(direction: (1, 0, 0)), on: All),
+            "turn": (what: Torque(center: (0.05, 0.05, 0.05), axis: (0, 0, 1)), on: All)})"#;
+    for run in configurations() {
+        let mut simulation = run.start(text);
+        simulation.advance(40).unwrap();
+        let held = DVec3::from_slice(&simulation.probe("all").unwrap());
+        assert!(held.z > 1.0, "{}: {held}", run.name);
+        let along = ["along", "turn"].map(|name| simulation.probe(name).unwrap()[0]);
+        assert_eq!((held.x, held.y, along), (0.0, 0.0, [0.0, 0.0]), "{}", run.name);
+        let body = simulation.body("b").unwrap();
+        let (field, _) = field_of(OutputField::Reaction, body, simulation.world_mut()).unwrap();
+        let sum: DVec3 =
+            field.chunks_exact(3).map(|force| DVec3::new(force[0].into(), force[1].into(), force[2].into())).sum();
+        near(run.name, sum.distance(held), 0.0, held.z, 1e-6);
     }
 }

@@ -43,6 +43,23 @@ fn elements_go_at_their_time() {
     }
 }
 
+/// Of elements that are all gone J is 1 and stress 0, as fields have it.
+#[test]
+fn what_is_gone_is_not_deformed() {
+    for run in &configurations() {
+        let probes = "removal: [(on: Elements([1, 3]), when: At(0.02))],
+            probes: {\"j\": (what: VolumeRatio, on: Elements([1, 3])), \"s\": (what: Stress, on: Elements([1, 3])),
+                \"both\": (what: VolumeRatio, on: Elements([0, 1]))}";
+        let mut simulation = bar(run, "Hex8", probes);
+        for steps in [20, 10] {
+            simulation.advance(steps).unwrap();
+            assert_eq!(simulation.probe("j").unwrap(), [1.0], "{}", run.name);
+            assert_eq!(simulation.probe("s").unwrap(), [0.0; 6], "{}", run.name);
+            near(run.name, simulation.probe("both").unwrap()[0], 1.0, 1.0, 1e-6);
+        }
+    }
+}
+
 #[test]
 fn elements_go_one_after_the_other_from_the_middle_outwards() {
     for run in &configurations() {

@@ -179,6 +179,31 @@ fn foreign_snapshots_are_refused_with_the_reason() {
     }
 }
 
+/// What is counted is a part of the state: which fields of a scene say so is told, and not which columns there are.
+#[test]
+fn a_snapshot_with_other_work_counted_is_refused_with_what_asks_for_it() {
+    let (run, text) = (cpu(Precision::F32), scene("Hex8", ""));
+    let named = "output: (energies_every: 0.01)";
+    assert!(text.contains(named));
+    let scenes = [text.clone(), text.replace(named, ""), text.replace(named, "guards: (off: [Energy])")];
+    let words = ["`output` names `energies_every`", "for the guard `Energy`", "`guards` has `Energy` in `off`"];
+    for (theirs, from) in scenes.iter().enumerate() {
+        let mut simulation = run.start(from);
+        simulation.advance(3).unwrap();
+        let kept = simulation.snapshot().unwrap();
+        for (here, into) in scenes.iter().enumerate() {
+            match run.start(into).restore(&kept) {
+                Ok(()) => assert_eq!(theirs, here),
+                Err(error) => {
+                    let said = error.to_string();
+                    assert!(theirs != here && said.contains("of another simulation"), "{said}");
+                    assert!(said.contains(words[theirs]) && said.contains(words[here]), "{theirs}, {here}: {said}");
+                }
+            }
+        }
+    }
+}
+
 /// Two blocks, one above the other, and how they meet.
 fn blocks(contacts: &str) -> String {
     let block = |z: f64| {

@@ -447,7 +447,7 @@ typedef struct {
      */
     double stiffness;
     /**
-     * What the batch took on the wall over its simulated time.
+     * What the batch took on the wall over its simulated time: below 1 is faster than real time.
      */
     double real_time_factor;
     /**
@@ -753,7 +753,9 @@ SinewStatus sinew_snapshot(SinewSimulation *simulation, SinewSnapshot **snapshot
 
 /**
  * Goes back to a snapshot of this simulation or one of the same scene, text and options: what goes on from it gives
- * the same bits as before. What does not fit is refused, and nothing has changed.
+ * the same bits as before. What does not fit is refused, and nothing has changed. What is held in a snapshot of
+ * another process has no numbers here yet: it gets the next ones that `sinew_grab` would give, in the order in which
+ * it was grabbed.
  */
 SinewStatus sinew_restore(SinewSimulation *simulation,
                           const SinewSnapshot *snapshot);
@@ -890,7 +892,7 @@ SinewStatus sinew_port_tick(SinewPort *port,
 SinewStatus sinew_port_send(SinewPort *port, const SinewPose *pose);
 
 /**
- * The last touch that came; before the first one all of it is 0.
+ * The last touch that came; before the first one all of it is 0 but the orientation, which is 0, 0, 0, 1.
  */
 SinewStatus sinew_port_touch(SinewPort *port, SinewTouch *touch);
 
@@ -917,7 +919,7 @@ SinewStatus sinew_advance_to(SinewSimulation *simulation, double time);
 
 /**
  * Takes as many steps as fit into a budget of time on the wall (s), one at least, until the clock shows at least
- * `until` (s). `advanced` may be NULL.
+ * `until` (s). `advanced` may be NULL. The caller keeps the pace: `real_time` of a scene waits for nothing here.
  */
 SinewStatus sinew_advance_for(SinewSimulation *simulation,
                               double budget,

@@ -55,7 +55,9 @@ pub unsafe extern "C" fn sinew_snapshot(
 }
 
 /// Goes back to a snapshot of this simulation or one of the same scene, text and options: what goes on from it gives
-/// the same bits as before. What does not fit is refused, and nothing has changed.
+/// the same bits as before. What does not fit is refused, and nothing has changed. What is held in a snapshot of
+/// another process has no numbers here yet: it gets the next ones that `sinew_grab` would give, in the order in which
+/// it was grabbed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_restore(
     simulation: *mut SinewSimulation,

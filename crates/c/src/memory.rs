@@ -98,7 +98,7 @@ pub(crate) unsafe fn fill_text(text: &str, buffer: *mut c_char, capacity: usize,
 }
 
 /// The size that the caller says a structure has: that of its header.
-unsafe fn size_of_callers<T: Structure>(at: *const T, what: &str) -> Outcome<usize> {
+pub(crate) unsafe fn size_of_callers<T: Structure>(at: *const T, what: &str) -> Outcome<usize> {
     if at.is_null() {
         return Err(null(what));
     }

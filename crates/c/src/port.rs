@@ -73,7 +73,7 @@ pub struct SinewTouch {
     pub normal: [f64; 3],
     /// Stiffness along the normal (N/m).
     pub stiffness: f64,
-    /// What the batch took on the wall over its simulated time.
+    /// What the batch took on the wall over its simulated time: below 1 is faster than real time.
     pub real_time_factor: f64,
     /// The number of the pose that the batch went to; 0 where none had come since the port was opened and since the
     /// run last went back.
@@ -197,7 +197,7 @@ pub unsafe extern "C" fn sinew_port_send(port: *mut SinewPort, pose: *const Sine
     })
 }
 
-/// The last touch that came; before the first one all of it is 0.
+/// The last touch that came; before the first one all of it is 0 but the orientation, which is 0, 0, 0, 1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_port_touch(port: *mut SinewPort, touch: *mut SinewTouch) -> SinewStatus {
     // SAFETY: as the header asks of callers

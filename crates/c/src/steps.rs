@@ -1,7 +1,7 @@
 //! Steps and time.
 
 use crate::handle::{SinewSimulation, with};
-use crate::memory::{Structure, write};
+use crate::memory::{Structure, size_of_callers, write};
 use crate::status::{Failure, SinewStatus, entry};
 use sinew::Ended;
 use std::time::Duration;
@@ -80,7 +80,7 @@ pub unsafe extern "C" fn sinew_advance_to(simulation: *mut SinewSimulation, time
 }
 
 /// Takes as many steps as fit into a budget of time on the wall (s), one at least, until the clock shows at least
-/// `until` (s). `advanced` may be NULL.
+/// `until` (s). `advanced` may be NULL. The caller keeps the pace: `real_time` of a scene waits for nothing here.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_advance_for(
     simulation: *mut SinewSimulation,
@@ -92,6 +92,9 @@ pub unsafe extern "C" fn sinew_advance_for(
     entry(|| unsafe {
         let time = Duration::try_from_secs_f64(budget)
             .map_err(|_| Failure::argument(format!("`budget` is {budget}: it must be a time in s, 0 or above")))?;
+        if !advanced.is_null() {
+            size_of_callers(advanced, "advanced")?;
+        }
         let done = with(simulation, |state, _| Ok(state.simulation.advance_for(time, until)?))?;
         if advanced.is_null() {
             return Ok(());

@@ -1,8 +1,10 @@
 //! How far a run is: a bar where somebody looks, else a line now and then.
 
-use super::{terminal, wording};
+use super::failure::Failure;
+use super::{Outcome, interrupt, terminal, wording};
 use indicatif::{ProgressBar, ProgressStyle};
-use sinew::{Equilibrium, Error, Simulation};
+use sinew::{Equilibrium, Simulation};
+use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 /// Time between two lines where there is no terminal.
@@ -76,15 +78,21 @@ impl Progress {
     }
 }
 
-/// Brings bodies to rest where a scene begins so, and tells how far that is.
+/// Brings bodies to rest where a scene begins so, tells how far that is, and ends where somebody wants that.
 ///
 /// # Errors
-/// As [`Simulation::settle`].
-pub fn settle(simulation: &mut Simulation) -> Result<(), Error> {
+/// As [`Simulation::settle`]; that it was interrupted.
+pub fn settle(simulation: &mut Simulation) -> Outcome {
     let mut progress = Progress::begin(0, 0.0, true);
-    let settled = simulation.settle_telling(|steps, found| progress.tell_residual(steps, found));
+    let settled = simulation.settle_telling(|steps, found| {
+        progress.tell_residual(steps, found);
+        if interrupt::is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
     progress.end();
-    settled
+    match settled? {
+        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Break(()) => Err(Failure::Interrupted),
+    }
 }
 
 /// Shows that something goes on whose end cannot be told, while `work` is done.

@@ -102,7 +102,10 @@ pub fn run(
     }
     tell_of_inputs(&simulation);
     if from.is_none() && scene.scene.start != InitialState::Undeformed {
-        progress::settle(&mut simulation)?;
+        interrupt::listen();
+        let settled = progress::settle(&mut simulation);
+        interrupt::rest();
+        settled?;
     }
     let mut folder = Folder::create_for(path, &scene.path.display().to_string())?;
     for picture in PICTURES {
@@ -189,11 +192,13 @@ fn tell_of_changes(simulation: &Simulation, known: &mut u64) {
 /// Writes what stands at the end: the nodes if their state means something, and the summary, which says of a result
 /// that is no number what it says of a run that broke down.
 fn finish(simulation: &mut Simulation, folder: &mut Folder, ended: Outcome) -> Result<(Summary, Outcome), Failure> {
-    // a run that broke down ends in numbers that mean nothing, one that found no equilibrium in none that was asked
-    // for; the fields hold the last good state
+    // a run that broke down ends in numbers that mean nothing, one that found no equilibrium, or was interrupted on the
+    // way there, in none that was asked for; the fields hold the last good state
     let meaningless = |error: &Error| matches!(error, Error::Unstable(_) | Error::NotConverged(_));
+    let is_on_the_way = simulation.equilibrium().is_some_and(|found| !found.reached);
     let ended = match ended {
         Err(Failure::Engine(error)) if meaningless(&error) => Err(Failure::Engine(error)),
+        Err(Failure::Interrupted) if is_on_the_way => Err(Failure::Interrupted),
         ended => match simulation.write_nodes(folder) {
             Ok(()) => ended,
             Err(error) if meaningless(&error) => Err(error.into()),

@@ -1,8 +1,9 @@
 //! Rigid tools that are in bodies which they touch: contact is of nodes, and does not see what is between them.
 
-use super::{OVERLAP, Placed, message_at, near, place};
+use super::{OVERLAP, Placed, near, place};
 use crate::components::*;
 use crate::contact::immersed;
+use crate::math::coordinates;
 use crate::observation::tools::poses_now;
 use crate::tools::Geometry;
 use bevy_ecs::prelude::*;
@@ -125,7 +126,7 @@ fn message(Pair { tool, edge, .. }: &Pair, body: &Placed<'_>, (at, element): (DV
          below that of {}; contact is of nodes, however slow the tool is: finer faces, a thicker tool or one that presses \
          less deep keep it out",
         body.label,
-        message_at(at),
+        coordinates(at, *edge),
         body.authoring.element_ids.of(element),
         DEPTH * edge,
         body.label,

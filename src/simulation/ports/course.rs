@@ -14,6 +14,15 @@ const FORGET: f64 = 0.9;
 /// Speeds below this share of the port's are none.
 const SLOW: f64 = 0.01;
 
+/// Ways below this share of the port's longest say nothing of what answers them: forces change by rounding, and by what
+/// rings, as well.
+const LEAST: f64 = 3e-4;
+
+/// How many times the stiffness with which tissue answers at once holds a proxy back. A mass m gives λ² + gλ − g = 0
+/// from batch to batch with g = m/T² over the sum of stiffnesses: with 1 it is ½, and a proxy swings on; with 2 it is
+/// ¼, and a swing is .64 times the one before.
+const CALM: f64 = 2.0;
+
 /// The present batch of a port, as snapshots have it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -33,6 +42,14 @@ pub struct PortState {
     touched: Option<DVec3>,
     /// Sums of the squares of ways along the force, and of ways times what the force changed by.
     ways: [f64; 2],
+    /// The way of the last batch (m), and what it changed by.
+    #[serde(default)]
+    way: DVec3,
+    #[serde(default)]
+    change: DVec3,
+    /// Sums of the squares of what ways changed by as they turned back, and of that times what the force changed by.
+    #[serde(default)]
+    changes: [f64; 2],
     /// The fastest it ever went, as a share of what it may.
     fastest: f64,
 }
@@ -49,6 +66,9 @@ impl PortState {
             force: DVec3::ZERO,
             touched: None,
             ways: [0.0; 2],
+            way: DVec3::ZERO,
+            change: DVec3::ZERO,
+            changes: [0.0; 2],
             fastest: SLOW,
         }
     }
@@ -59,8 +79,9 @@ impl PortState {
         let of = |place: DVec3, turn: DQuat| place.is_finite() && turn.is_finite() && turn.is_normalized();
         let there = self.path.iter().all(|&(time, place, turn)| time.is_finite() && of(place, turn));
         let aims = self.target.is_none_or(|(place, turn)| of(place, turn));
-        let numbers = self.ways.into_iter().chain([self.fastest]).chain(self.force.to_array());
-        let numbers = numbers.chain(self.touched.unwrap_or_default().to_array()).all(f64::is_finite);
+        let vectors = [self.force, self.touched.unwrap_or_default(), self.way, self.change];
+        let sums = self.ways.into_iter().chain(self.changes).chain([self.fastest]);
+        let numbers = sums.chain(vectors.into_iter().flat_map(|vector| vector.to_array())).all(f64::is_finite);
         there && aims && numbers && from <= until && self.begins <= self.ends && self.felt_at <= self.ends
     }
 
@@ -81,7 +102,7 @@ impl PortState {
             (Some(target), Follow::Position) => target,
             // both springs as they are at the end of the batch: tissue goes on from the force that it had
             (Some((aim, turned)), Follow::Proxy { stiffness, damping }) => {
-                let sum = stiffness + self.stiffness() + damping / batch;
+                let sum = stiffness + self.stiffness() + CALM * self.dynamic_stiffness() + damping / batch;
                 let aim = place + (aim - place) * (stiffness / sum) + self.force / sum;
                 (if aim.is_finite() { aim } else { place }, turned)
             }
@@ -106,20 +127,28 @@ impl PortState {
         }
     }
 
-    /// Ends the batch at its last step. What is no number, of bodies that break down, is not remembered.
-    pub fn end(&mut self, felt: Felt, step: u64) {
+    /// Ends the batch of a port at its last step. What is no number, of bodies that break down, is not remembered.
+    pub fn end(&mut self, port: &Port, felt: Felt, step: u64) {
         let felt = if felt.force.is_finite() { felt } else { Felt { force: DVec3::ZERO, ..felt } };
-        let middle = 0.5 * (self.path[0].1 + self.path[1].1);
-        self.ways = self.ways.map(|sum| FORGET * sum);
+        let [(from, start, _), (until, end, _)] = self.path;
+        let (way, middle) = (end - start, 0.5 * (start + end));
+        let (force, least) = (felt.force - self.force, LEAST * port.speed * (until - from));
+        // what is touched for the first time was at rest before
+        let (change, turns_back) = match self.touched {
+            None if felt.in_contact => (way, true),
+            _ => (way - self.way, (way - self.way).dot(self.change) < 0.0),
+        };
+        if felt.in_contact && turns_back && change.length() > least {
+            self.changes = with(self.changes, change.length_squared(), -change.dot(force));
+        }
         if let Some(before) = self.touched.filter(|_| felt.in_contact) {
             let out = felt.force.normalize_or_zero();
-            let (way, change) = ((middle - before).dot(out), (felt.force - self.force).dot(out));
-            self.ways[0] += way * way;
-            self.ways[1] -= way * change;
+            let moved = (middle - before).dot(out);
+            if moved.abs() > least {
+                self.ways = with(self.ways, moved * moved, -moved * force.dot(out));
+            }
         }
-        if !self.ways.iter().all(|sum| sum.is_finite()) {
-            self.ways = [0.0; 2];
-        }
+        (self.way, self.change) = (way, change);
         self.touched = felt.in_contact.then_some(middle);
         self.force = felt.force;
         self.felt_at = step;
@@ -132,12 +161,30 @@ impl PortState {
     }
 
     /// By how much the force grows for each metre that the tool goes in (N/m): the line through what the last batches
-    /// changed by.
+    /// changed by in which it went anywhere.
     pub fn stiffness(&self) -> f64 {
-        let [squares, products] = self.ways;
-        let found = products / squares;
-        if self.touched.is_some() && found.is_finite() { found.max(0.0) } else { 0.0 }
+        if self.touched.is_some() { slope(self.ways) } else { 0.0 }
     }
+
+    /// By how much the force grows for each metre by which the way of a batch becomes longer (N/m), of ways that turn
+    /// back from batch to batch: nodes that the tool takes along, and the waves that go out from them, answer these at
+    /// once, with 2 m/T² + ρ c A/T of batches T. A proxy without mass that answers a batch later swings if it yields by
+    /// more than that.
+    fn dynamic_stiffness(&self) -> f64 {
+        if self.touched.is_some() { slope(self.changes) } else { 0.0 }
+    }
+}
+
+/// Sums with another square and another product, of which earlier ones fade; none beyond all numbers.
+fn with([squares, products]: [f64; 2], square: f64, product: f64) -> [f64; 2] {
+    let sums = [FORGET * squares + square, FORGET * products + product];
+    if sums.iter().all(|sum| sum.is_finite()) { sums } else { [0.0; 2] }
+}
+
+/// The slope of a line through pairs of which these are the sums, where it rises.
+fn slope([squares, products]: [f64; 2]) -> f64 {
+    let found = products / squares;
+    if found.is_finite() { found.max(0.0) } else { 0.0 }
 }
 
 #[cfg(test)]

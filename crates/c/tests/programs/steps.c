@@ -109,6 +109,13 @@ int main(void) {
     CLAIM(advanced.why == SINEW_ENDED_REACHED && advanced.steps >= 1 && advanced.steps <= 3);
     FINE(sinew_advance_for(simulation, 0, 1, &advanced));
     CLAIM(advanced.why == SINEW_ENDED_BUDGET && advanced.steps >= 1);
+    /* what is refused takes no steps */
+    FINE(sinew_clock(simulation, &clock));
+    advanced.size = 0;
+    CLAIM(sinew_advance_for(simulation, 60, clock.time + 2 * clock.time_step, &advanced) == SINEW_WRONG_ARGUMENT);
+    size = clock.steps;
+    FINE(sinew_clock(simulation, &clock));
+    CLAIM(clock.steps == size && strstr(sinew_last_error(), "sizeof(SinewAdvanced)") != NULL);
     FINE(sinew_change(simulation, &change, 1));
     FINE(sinew_step(simulation, 10));
 
