@@ -141,25 +141,6 @@ fn a_state_that_was_kept_elsewhere_is_gone_on_from() {
     assert_eq!((state.refusal.map(|refusal| refusal.command), state.step), (Some("restore"), 0));
 }
 
-/// Another state at the same step: of another run, and of other material.
-#[test]
-fn what_is_measured_is_of_the_state_that_is_seen() {
-    let (mut one, mut other) = (session(FALL), session(FALL));
-    one.command(Command::Step(40));
-    other.command(Command::Input { name: "weight".into(), value: -3.0 });
-    other.command(Command::Step(40));
-    let (seen, wanted) = (other.state(), one.state());
-    assert!(seen.step == wanted.step && seen.probes != wanted.probes && seen.energies != wanted.energies);
-    let kept = one.simulation().unwrap().snapshot().unwrap();
-    other.command(Command::Restore(Box::new(kept)));
-    let restored = other.state();
-    assert_eq!((restored.probes, restored.energies), (wanted.probes, wanted.energies));
-    other.command(Command::Set(vec!["materials.m.neo_hookean=Young(young: 6000, poisson: 0.45)".into()]));
-    let told = other.state();
-    assert_eq!(told.refusal.map(|refusal| refusal.reason), None);
-    assert_eq!(told.energies, other.simulation().unwrap().energies().unwrap());
-}
-
 #[test]
 fn time_goes_as_fast_as_on_the_wall_or_as_asked() {
     let mut session = session(FALL);

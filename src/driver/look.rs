@@ -216,3 +216,6 @@ fn body(name: &str, simulation: &mut Simulation) -> Result<Body, Error> {
         elements: authoring.element_ids,
     })
 }
+
+#[cfg(test)]
+mod tests;
