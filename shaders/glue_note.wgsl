@@ -26,7 +26,7 @@ fn last_step(tie: u32) -> vec3<f32> {
     var sum = vec3<f32>(0.0);
     for (var number = tie_word(tie, PART); number < tie_word(tie, PART + 1u); number++) {
         let of_tie = part(number);
-        let at = NODE_NUMBERS * of_tie.index + LAST;
+        let at = NODE_NUMBERS * of_tie.index + WENT;
         sum += of_tie.weight * vec3<f32>(glue_nodes[at], glue_nodes[at + 1u], glue_nodes[at + 2u]);
     }
     return sum;

@@ -14,10 +14,11 @@ struct GlueTies {
 @group(0) @binding(0) var<uniform> glue_of: GlueTies;
 @group(0) @binding(0) var<storage, read> glue_ties: array<u32>;
 
-const NODE_NUMBERS: u32 = 12u; // displacement, next step, last step, response
+const NODE_NUMBERS: u32 = 15u; // displacement, next step, last step, response, last step for work
 const NEXT: u32 = 3u;
 const LAST: u32 = 6u;
 const RESPONSE: u32 = 9u;
+const WENT: u32 = 12u;
 
 const TIE_WORDS: u32 = 21u;
 const PART: u32 = 0u; // places of words of a tie: its first part, and the end of them

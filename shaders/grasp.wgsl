@@ -96,9 +96,11 @@ fn hold(i: u32, node: u32, number: u32, ends: vec4<f32>) -> vec4<f32> {
         tool_hold[own + 11u] += force.z;
     }
     if grips[number].counts_work != 0u {
-        let work = step.work_factor * dot(force, from_frame(at + 3u, of_tool));
-        tool_hold[own + 4u] += work;
-        tool_hold[own + 5u] += work - step.work_factor * dot(force, 0.5 * (of_node.before + of_node.predicted + gap));
+        let on_node = step.work_factor * dot(force, 0.5 * (of_node.before + of_node.predicted + gap));
+        // whom it held it moved as itself, and gives to it all that it does
+        let lost = select(step.work_factor * dot(force, from_frame(at + 3u, of_tool)) - on_node, 0.0, bore);
+        tool_hold[own + 4u] += on_node + lost;
+        tool_hold[own + 5u] += lost;
     }
     add_load(node, force);
     return vec4<f32>(place + of_node.predicted + gap, 1.0);

@@ -1,6 +1,6 @@
 // Where nodes of a surface would go, as integrate will find it, and how far for a force; between
 // surface_contact_place.wgsl and surface_contact.wgsl. damped is in damping_coefficient.wgsl, relaxation.wgsl or
-// generated.
+// generated; last_step is generated.
 struct SurfaceBody {
     first: u32, // first node of the body's surface
     count: u32, // how many
@@ -22,19 +22,21 @@ fn surface_contact_foresee(@builtin(global_invocation_id) id: vec3<u32>, @builti
     }
     let node = surface_rows[4u * (body.first + i)];
     let at = 3u * node;
-    let to = 12u * (body.first + i);
+    let to = 15u * (body.first + i);
     let held = (vec3<u32>(constrained_axes[node]) & vec3<u32>(1u, 2u, 4u)) != vec3<u32>(0u);
     let free = select(vec3<f32>(1.0), vec3<f32>(0.0), held);
     let inertia = mass[node];
     var before = vec3<f32>(surface_nodes[to + 6u], surface_nodes[to + 7u], surface_nodes[to + 8u]);
     var after = vec3<f32>(0.0);
     var response = vec3<f32>(0.0);
+    var went = vec3<f32>(0.0);
     if inertia > 0.0 {
         let inner = vec3<f32>(internal_force[at], internal_force[at + 1u], internal_force[at + 2u]);
         let outer = vec3<f32>(external_force[at], external_force[at + 1u], external_force[at + 2u]);
         let per_mass = 1.0 / inertia;
         after = before + free * damped(node, before, (step.force_factor * per_mass) * (outer - inner), per_mass);
         response = free * (step.force_factor * damped(node, vec3<f32>(0.0), vec3<f32>(1.0), per_mass).x * per_mass);
+        went = last_step(node, before, held);
     } else {
         before = vec3<f32>(0.0);
     }
@@ -47,4 +49,7 @@ fn surface_contact_foresee(@builtin(global_invocation_id) id: vec3<u32>, @builti
     surface_nodes[to + 9u] = response.x;
     surface_nodes[to + 10u] = response.y;
     surface_nodes[to + 11u] = response.z;
+    surface_nodes[to + 12u] = went.x;
+    surface_nodes[to + 13u] = went.y;
+    surface_nodes[to + 14u] = went.z;
 }

@@ -29,7 +29,7 @@ fn surface_contact_place(@builtin(global_invocation_id) id: vec3<u32>, @builtin(
     let place = bitcast<vec3<f32>>(rest) + u;
     let then = body.displacements + 3u * node;
     let moved = u - bitcast<vec3<f32>>(vec3<u32>(surface_lists[then], surface_lists[then + 1u], surface_lists[then + 2u]));
-    let to = 12u * node;
+    let to = 15u * node;
     surface_nodes[to] = place.x;
     surface_nodes[to + 1u] = place.y;
     surface_nodes[to + 2u] = place.z;

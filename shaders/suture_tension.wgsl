@@ -58,22 +58,26 @@ fn suture_tension(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wor
     let stiffness = number(thread, STIFFNESS);
     let whole = stiffness * max(size - rest, 0.0);
     let left = min(one.w, other.w);
+    let tension = left * whole;
     var becomes = HOLDS;
     // in a static analysis nothing tears
     if threads.relaxed == 0u {
         if left <= 0.0 {
             becomes = CAME_OUT;
-        } else if whole >= number(thread, STRENGTH) {
+        } else if tension >= number(thread, STRENGTH) {
             becomes = TORE;
         }
     }
-    let tension = select(0.0, left * whole, becomes == HOLDS);
-    pull(thread, select(vec3<f32>(0.0), way * (tension / max(size, 1e-37)), tension > 0.0));
-    suture_state[state + 2u] = tension;
-    suture_state[state + 3u] = size;
+    let pulls = becomes == HOLDS && tension > 0.0;
+    pull(thread, select(vec3<f32>(0.0), way * (tension / max(size, 1e-37)), pulls));
+    suture_state[state + 2u] = select(0.0, tension, becomes == HOLDS);
+    // of what comes out length and energy are those of when it was last drawn
+    if becomes != CAME_OUT {
+        suture_state[state + 3u] = size;
+        suture_state[state + 4u] = 0.5 * tension * whole / stiffness;
+    }
     if becomes != HOLDS {
         suture_state[state] = becomes;
         suture_state[state + 1u] = step.time;
-        suture_state[state + 4u] = 0.5 * whole * whole / stiffness;
     }
 }

@@ -11,7 +11,8 @@ struct Limits {
 @group(0) @binding(2) var<storage, read> touchable: array<vec4<u32>>; // bits of the place at rest (m), and a bit for each tool
 @group(0) @binding(3) var<storage, read_write> tool_touch: array<f32>;
 
-const TOUCH_NUMBERS: u32 = 7u;
+const TOUCH_NUMBERS: u32 = 10u;
+const SPEED: u32 = 7u; // where it is kept how fast a tool went (m/s)
 const STICKS: f32 = 1.0;
 const SLIDES: f32 = 2.0;
 const TURNS: u32 = 12u;
@@ -31,6 +32,7 @@ struct Touch {
     tangential: vec3<f32>, // what the tool adds along the surface (m)
     push: f32, // and how far outwards
     touches: bool,
+    touched: bool, // whether it did in the last step
     slides: bool, // whether friction does not hold it
     swept: bool, // whether it stays outside a plane, in the tool's frame: where its way first meets the tool
     plane_normal: vec3<f32>,
@@ -155,6 +157,18 @@ fn evaluate_again(tool: u32, rest: vec3<f32>, moved: vec3<f32>, before: Touch) -
     return touch;
 }
 
+// How far a tool that touches went in the last step, there (m), where its numbers at a node begin.
+fn tool_before(at_tool: u32, touch: Touch, of_node: Foreseen) -> vec3<f32> {
+    if !touch.touched {
+        return touch.tool_step;
+    }
+    let at = at_tool + SPEED;
+    let kept = step.time_step * vec3<f32>(tool_touch[at], tool_touch[at + 1u], tool_touch[at + 2u]);
+    // there the node's last step is the one to come already
+    let is_told = (of_node.free == vec3<f32>(0.0)) & (of_node.before != vec3<f32>(0.0));
+    return select(kept, touch.tool_step, is_told);
+}
+
 fn along_surface(v: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     return v - normal * dot(v, normal);
 }
@@ -182,6 +196,7 @@ fn tool_contact(i: u32, node: u32) {
         found[tool].touches = false;
         if is_active && ((bits >> tool) & 1u) == 1u {
             found[tool] = predict(tool, rest, moved, of_node.before, predicted, state);
+            found[tool].touched = state != 0.0;
             if found[tool].touches {
                 touched++;
             }
@@ -250,16 +265,21 @@ fn tool_contact(i: u32, node: u32) {
         tool_touch[at_tool + 3u] = select(STICKS, SLIDES, found[tool].slides);
         if NUMBERS > TOUCH_NUMBERS {
             // a hand feels the mean over a batch of steps
-            tool_touch[at_tool + 7u] += force.x;
-            tool_touch[at_tool + 8u] += force.y;
-            tool_touch[at_tool + 9u] += force.z;
+            tool_touch[at_tool + TOUCH_NUMBERS] += force.x;
+            tool_touch[at_tool + TOUCH_NUMBERS + 1u] += force.y;
+            tool_touch[at_tool + TOUCH_NUMBERS + 2u] += force.z;
         }
         if limits.counts_work != 0u {
-            let work = step.work_factor * dot(force, found[tool].tool_step);
+            let tool_step = found[tool].tool_step;
+            let mean = 0.5 * (tool_before(at_tool, found[tool], of_node) + tool_step);
+            let work = step.work_factor * dot(force, mean);
             let on_node = step.work_factor * dot(force, 0.5 * (of_node.before + d));
-            tool_touch[at_tool + 4u] += length(along_surface(d - found[tool].tool_step, found[tool].direction));
+            tool_touch[at_tool + 4u] += length(along_surface(d - tool_step, found[tool].direction));
             tool_touch[at_tool + 5u] += work;
             tool_touch[at_tool + 6u] += work - on_node;
+            for (var k = 0u; k < 3u; k++) {
+                tool_touch[at_tool + SPEED + k] = step.rate * tool_step[k];
+            }
         }
     }
     add_load(node, load);

@@ -3,7 +3,7 @@
 mod contacts;
 
 use super::grasp::Grip;
-use super::node_slices::{MetColumns, NodeSlices, SlicedColumns, note_farther};
+use super::node_slices::{MetColumns, NodeSlices, SlicedColumns, last_step, note_farther};
 use super::repeat::Repeat;
 use super::system::{Phase, System};
 use super::tool_contact::STILL;
@@ -113,7 +113,11 @@ fn free_tool(
     for (tool, state) in tools.all.iter().zip(&mut motions.all) {
         let step = ToolStep::new(tool, state.motion, &clock, &signals);
         let worked = state.work_of_half(tool, clock.time_step, |body, row| {
-            bodies.get(body).map_or(DVec3::ZERO, |columns| columns.nodes.step.vector(row))
+            bodies.get(body).map_or(DVec3::ZERO, |columns| {
+                let nodes = columns.nodes;
+                let previous = nodes.previous.map(|previous| &previous.0[..]);
+                last_step(nodes.step.vector(row), (nodes.axes.0[row], row), previous)
+            })
         });
         let near = step.near((tools.reference, &signals), &mut bodies, &state.touches);
         let fault = step.fault(&near);
@@ -196,6 +200,8 @@ impl ToolStep<'_> {
             let is_held = known.map_or_else(|| sticks || still(), |touch| touch.sticks);
             let friction = met.friction[usize::from(!is_held)];
             let target = known.map(|touch| touch.target);
+            // what is left to ask of the step before is its work
+            let foreseen = Foreseen { before: nodes.last_step(at), ..foreseen };
             all.push(Near { node, place, foreseen, arm, friction, edge: met.edge, swept: met.swept, target, out });
         }
         let Some(grip) = grip.map(Grip::<T>::of) else { return };

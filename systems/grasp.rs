@@ -173,10 +173,14 @@ impl Grasps {
             *felt += T::from_f64(force[i]);
         }
         if step.counts_work {
-            let work = step.coefficients.work_factor * force.dot(change.place(of_tool));
             let on_node = step.coefficients.work_factor * force.dot(0.5 * (foreseen.before + foreseen.step + gap));
-            values[4] += T::from_f64(work);
-            values[5] += T::from_f64(work - on_node);
+            // whom it held it moved as itself, and gives to it all that it does
+            let lost = match bore {
+                true => 0.0,
+                false => step.coefficients.work_factor * force.dot(change.place(of_tool)) - on_node,
+            };
+            values[4] += T::from_f64(on_node + lost);
+            values[5] += T::from_f64(lost);
         }
         nodes.add_load(row, force);
         Some(place + foreseen.step + gap)

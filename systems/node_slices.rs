@@ -21,6 +21,7 @@ pub(super) struct SlicedColumns {
     pub external: &'static mut ExternalForce,
     pub u: &'static Displacement,
     pub step: &'static DisplacementIncrement,
+    pub previous: Option<&'static PreviousPrescribedIncrement>,
     pub compensation: Option<&'static DisplacementCompensation>,
 }
 
@@ -37,6 +38,8 @@ pub(super) struct NodeSlices<'a, T> {
     pub external: &'a mut [T],
     pub u: &'a [T],
     pub step: &'a [T],
+    /// The last steps (m) along axes that are told, where they are kept.
+    previous: Option<&'a [f32]>,
     /// What displacements have too much of by rounding (m), and behind it what steps have.
     pub compensation: Option<&'a [T]>,
 }
@@ -55,6 +58,7 @@ impl<'a, T: Scalar> NodeSlices<'a, T> {
             external: columns.external.into_inner().slice_mut(),
             u: columns.u.slice(),
             step: columns.step.slice(),
+            previous: columns.previous.map(|previous| &previous.0[..]),
             compensation: columns.compensation.map(|compensation| compensation.slice()),
         }
     }
@@ -74,6 +78,22 @@ impl<'a, T: Scalar> NodeSlices<'a, T> {
         let force = vector(self.external, row) - vector(self.internal, row);
         coefficients.foresee(mass, damping, self.axes[row], vector(self.step, row), force)
     }
+
+    /// The last step of a node (m), for work that is counted: see [`last_step`].
+    pub fn last_step(&self, row: usize) -> DVec3 {
+        if self.mass[row] <= T::default() {
+            return DVec3::ZERO;
+        }
+        last_step(vector(self.step, row), (self.axes[row], row), self.previous)
+    }
+}
+
+/// The last step of a node (m) whose axes are constrained so: along those that are told `boundary` has written over it
+/// what the next one is, and has kept it where work is counted.
+pub(super) fn last_step(step: DVec3, (axes, row): (u32, usize), previous: Option<&[f32]>) -> DVec3 {
+    let Some(previous) = previous else { return step };
+    let along = |i: usize| if axes >> i & 1 == 1 { f64::from(previous[3 * row + i]) } else { step[i] };
+    DVec3::from_array([0, 1, 2].map(along))
 }
 
 /// What contact between surfaces does to the nodes of a body, where these may meet others.

@@ -53,6 +53,9 @@ pub fn system() -> System {
 const STICKS: f64 = 1.0;
 const SLIDES: f64 = 2.0;
 
+/// Where [`ToolTouch`] has how fast a tool went.
+const SPEED: usize = 7;
+
 /// A point slips by no more than this in a step that is still, in edges.
 pub(in crate::systems) const STILL: f64 = 1e-6;
 
@@ -85,6 +88,25 @@ struct Touch {
     springs: bool,
     /// Where its way first meets the tool, of a node that could be through it where it ends.
     plane: Option<sweep::Plane>,
+}
+
+impl Touch {
+    /// How far the tool went there in the last step (m), by the numbers that are kept of it at a node that it touched
+    /// then. Its force works along the mean of that step and this one, as it does on the node: else what pushes harder
+    /// and harder while it slows down would lose less than nothing. A tool that has only come to touch is taken to go
+    /// evenly; so is any along axes that are told, where what is written as the node's step before (m) is the next one.
+    fn tool_before<T: SimdScalar>(
+        &self,
+        step: &ContactStep,
+        kept: Option<&[T]>,
+        (before, free): (DVec3, DVec3),
+    ) -> DVec3 {
+        let Some(kept) = kept else { return self.tool_step };
+        DVec3::from_array([0, 1, 2].map(|i| {
+            let is_told = free[i] == 0.0 && before[i] != 0.0;
+            if is_told { self.tool_step[i] } else { kept[SPEED + i].to_f64() / step.coefficients.rate }
+        }))
+    }
 }
 
 /// Those that touch a node: there is room for all, and nothing is written where there is none.
@@ -223,6 +245,7 @@ impl ToolContacts {
             let numbers = self.numbers_a_tool();
             let of_tool = &mut values[numbers * touch.tool..numbers * (touch.tool + 1)];
             let slip = along_surface(d - touch.tool_step, touch.direction).length();
+            let touched = was(touch.tool).contains(&true);
             for i in 0..3 {
                 of_tool[i] = T::from_f64(force[i]);
             }
@@ -231,12 +254,16 @@ impl ToolContacts {
             }
             of_tool[3] = T::from_f64(if touch.slides { SLIDES } else { STICKS });
             if step.counts_work {
-                let work = work_factor * force.dot(touch.tool_step);
+                let tool_before = touch.tool_before(step, touched.then_some(&*of_tool), (before, free));
+                let work = work_factor * force.dot(0.5 * (tool_before + touch.tool_step));
                 // along axes that are moved as told, too: who moves them does as much less
                 let on_node = work_factor * force.dot(0.5 * (before + d));
                 of_tool[4] += T::from_f64(slip);
                 of_tool[5] += T::from_f64(work);
                 of_tool[6] += T::from_f64(work - on_node);
+                for (i, speed) in of_tool[SPEED..TOUCH_NUMBERS].iter_mut().enumerate() {
+                    *speed = T::from_f64(touch.tool_step[i] * step.coefficients.rate);
+                }
             }
         }
         if !all.is_empty() {

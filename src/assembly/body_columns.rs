@@ -53,9 +53,10 @@ pub(super) fn insert_node_columns(
         entity.insert(Work(Reals::zeros(precision, WORK_NUMBERS * count)));
     } else if !scene.is_static() && !scene.guards.off.contains(&Guard::Energy) {
         entity.insert(InternalWork::zero(count));
-        if moved && !scene.is_implicit() {
-            entity.insert(PreviousPrescribedIncrement(vec![0.0; 3 * count]));
-        }
+    }
+    let counts_work = entity.contains::<Work>() || entity.contains::<InternalWork>();
+    if counts_work && moved && !scene.is_implicit() {
+        entity.insert(PreviousPrescribedIncrement(vec![0.0; 3 * count]));
     }
     if let Solver::Implicit { scheme, .. } = &scene.solver
         && !scene.is_static()

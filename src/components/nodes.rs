@@ -53,8 +53,8 @@ columns! {
     /// Exists in a motion without [`Work`] whose energy is guarded.
     InternalWork(Vec<f32>) = "internal_work", State of Account, Other, in "node_diagnostics";
     /// Displacement of the last step along prescribed axes (m), which `boundary` has written over in
-    /// [`DisplacementIncrement`], in f32 whatever the run's precision: a vector a node. Exists with [`InternalWork`]
-    /// where nodes are prescribed and steps are explicit.
+    /// [`DisplacementIncrement`], in f32 whatever the run's precision: a vector a node. Exists with [`Work`] or
+    /// [`InternalWork`] where nodes are prescribed and steps are explicit.
     PreviousPrescribedIncrement(Vec<f32>) = "previous_prescribed_increment", State of Account, Nodes(3), increments: All, in "node_diagnostics";
     /// Bits: which of those node systems that choose their nodes have chosen a node. Exists when there are some.
     ChosenBy(Vec<u32>) = "chosen_by", State of Own, Nodes(1);

@@ -13,13 +13,14 @@ columns! {
     /// What tools do to the nodes that they may touch: for each of [`ToolContacts::rows`] and each of its tools
     /// [`TOUCH_NUMBERS`] numbers: the force on the node in the last step (N); 0 where it did not touch, 1 where it
     /// stuck to the tool, 2 where it slid; since the start the length it has slid (m), the work that the tool has done
-    /// and what of that impact and friction have taken (J). Where a hand moves one of the tools, [`FELT_NUMBERS`] more:
-    /// the sum of the forces since its batch of steps began (N). Exists where tools may touch the body.
+    /// and what of that impact and friction have taken (J); how fast the tool went there in the last step in which it
+    /// touched the node (m/s). Where a hand moves one of the tools, [`FELT_NUMBERS`] more: the sum of the forces since
+    /// its batch of steps began (N). Exists where tools may touch the body.
     ToolTouch(Reals) = "tool_touch", State of Touch, Other;
 }
 
 /// Numbers of a node and a tool in [`ToolTouch`].
-pub const TOUCH_NUMBERS: usize = 7;
+pub const TOUCH_NUMBERS: usize = 10;
 
 /// Numbers more where a hand moves one of the body's tools.
 pub const FELT_NUMBERS: usize = 3;

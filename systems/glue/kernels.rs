@@ -119,7 +119,7 @@ fn strength(strength: Strength) -> [u32; 3] {
 /// Buffers that all have.
 struct Shared {
     ties: BufferId,
-    /// Twelve numbers a node: displacement, next step, last step, response.
+    /// Fifteen numbers a node: displacement, next step, last step, response, last step for work that is counted.
     nodes: BufferId,
     shares: BufferId,
     /// What a step finds of ties.
@@ -167,7 +167,7 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
     let rows = buffers.constants("rows of tied nodes".into(), bytemuck::cast_slice(&rows));
     let shared = Shared {
         ties: buffers.constants("ties".into(), bytemuck::cast_slice(&words)),
-        nodes: buffers.constants("nodes that are tied".into(), &vec![0; 4 * 12 * nodes]),
+        nodes: buffers.constants("nodes that are tied".into(), &vec![0; 4 * 15 * nodes]),
         shares: buffers.constants("shares of nodes that are tied".into(), &vec![0; 4 * nodes]),
         found: buffers.constants("forces of ties".into(), &vec![0; 4 * FOUND_NUMBERS * ties]),
     };

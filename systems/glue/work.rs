@@ -106,7 +106,7 @@ impl Work {
                 self.places[at] = columns.rest[row] - glue.reference + columns.displacement(row);
                 self.masses[at] = masses[row].to_f64();
                 let foreseen = columns.foresee(row, coefficients);
-                self.before[at] = foreseen.before;
+                self.before[at] = columns.last_step(row);
                 self.set.steps[at] = foreseen.step;
                 self.set.responses[at] = foreseen.free / foreseen.to_force;
                 at += 1;

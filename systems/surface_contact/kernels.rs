@@ -182,7 +182,7 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
         faces: buffers.constants("triangles of surfaces".into(), &words(faces.words)),
         lists: buffers.constants("lists of what may be near what".into(), &words(contacts.list_words(world).whole())),
         motion: buffers.constants("motion of surfaces".into(), &[0; 4 * MOTION_WORDS]),
-        nodes: buffers.constants("nodes of surfaces".into(), &vec![0; 4 * 12 * nodes]),
+        nodes: buffers.constants("nodes of surfaces".into(), &vec![0; 4 * 15 * nodes]),
         rows: buffers.constants("rows of surfaces".into(), &words(contacts.row_words(world))),
         shares: buffers.constants("shares of nodes of surfaces".into(), &vec![0; 4 * nodes]),
         contacts: {
@@ -296,8 +296,8 @@ pub(in crate::systems) fn note_farther(body: Entity, world: &World) -> (Vec<Frag
 pub(in crate::systems) struct ForeseenNodes {
     /// Four words a node: its row, and three of whoever asks.
     rows: BufferId,
-    /// Twelve numbers a node: three of whoever asks, the next step, the last step, which must be there already, and the
-    /// response to forces.
+    /// Fifteen numbers a node: three of whoever asks, the next step, the last step, which must be there already, the
+    /// response to forces, and the last step for work that is counted.
     pub(super) nodes: BufferId,
     /// A [`SurfaceBody`].
     of_body: BufferId,
@@ -320,6 +320,7 @@ impl ForeseenNodes {
             .fragment(shader!("surface_contact_foresee"))
             .fragment(shader!("row"))
             .fragment(damping_fragment(damped, relaxed))
+            .fragment(last_step(body, world))
             .bind_uniform::<SurfaceBody>("body", self.of_body)
             .bind("surface_rows", self.rows)
             .bind("surface_nodes", self.nodes)
@@ -328,6 +329,33 @@ impl ForeseenNodes {
         let columns = [ConstrainedAxes::NAME, InternalForce::NAME, ExternalForce::NAME];
         let columns = columns.into_iter().chain(damped.then_some(DampingCoefficient::NAME));
         let foresee = columns.fold(foresee, |kernel, name| kernel.bind(name, buffers.column(body, name)));
+        let foresee = match world.get::<PreviousPrescribedIncrement>(body) {
+            Some(_) => {
+                let column = buffers.column(body, PreviousPrescribedIncrement::NAME);
+                foresee.bind(PreviousPrescribedIncrement::BUFFER, column)
+            }
+            None => foresee,
+        };
         with_step(foresee, world)
     }
+}
+
+/// What declares `last_step`: the last step of a node (m), from what is written there, which along axes that are told
+/// is the next one.
+fn last_step(body: Entity, world: &World) -> Fragment {
+    let declared = "fn last_step(node: u32, written: vec3<f32>, held: vec3<bool>) -> vec3<f32> {\n";
+    if world.get::<PreviousPrescribedIncrement>(body).is_none() {
+        let text = format!("{declared}    return written;\n}}\n");
+        return Fragment::new("generated: previous steps are not kept", text);
+    }
+    let at = place_in_buffer::<PreviousPrescribedIncrement>(body, world);
+    let word = |i: usize| format!("bitcast<f32>(atomicLoad(&node_diagnostics[{}u + 3u * node]))", at + i);
+    let text = format!(
+        "@group(0) @binding(0) var<storage, read_write> node_diagnostics: array<atomic<u32>>;\n{declared}    let kept = \
+         vec3<f32>({}, {}, {});\n    return select(written, kept, held);\n}}\n",
+        word(0),
+        word(1),
+        word(2)
+    );
+    Fragment::new("generated: previous steps", text)
 }

@@ -227,7 +227,11 @@ fn count_work<T: Scalar>(
 ) {
     for (place, work) in set.works() {
         let (body, row) = nodes[near.nodes[place] as usize];
-        let taken = &mut bodies[body as usize].touch[MEETING_NUMBERS * row as usize + 7];
+        let (of_body, row) = (&mut bodies[body as usize], row as usize);
+        // along axes that are told the step to come was taken for the last one, too
+        let ahead = vector(of_body.step, row) - of_body.last_step(row);
+        let work = work - 0.5 * set.forces[place].truncate().dot(ahead);
+        let taken = &mut of_body.touch[MEETING_NUMBERS * row + 7];
         *taken = T::from_f64(taken.to_f64() - work_factor * work);
     }
 }

@@ -58,6 +58,70 @@ fn a_suture_tears_at_its_strength() {
     near("loss", reading.loss, stored, stored, 0.04);
     let energies = simulation.energies().unwrap();
     near("work", energies.constraint_work.unwrap() - energies.kinetic, stored, stored, 0.05);
+    // its force grows by the way: the mean of both ends of each step is what it stores
+    near("its own work", energies.load_work.unwrap(), -reading.loss, stored, 1e-6);
+}
+
+/// Of a thread whose tissue goes length, energy and time are those at the end of the step before: in the next one
+/// nothing draws it, and what it was in springs back by .4 mm.
+#[test]
+fn a_suture_comes_out_as_it_was_drawn_last() {
+    let text = cubes(
+        "",
+        "removal: [(body: \"low\", on: Sphere(center: (0.01, 0.01, 0.018), radius: 0.004), when: At(0.1))],
+        constraints: [Fixed(body: \"low\", on: Plane(normal: (0, 0, 1), at: 0)),
+            Fixed(body: \"up\", on: Plane(normal: (0, 0, 1), at: 0.05))],",
+        "stiffness: 40, length: 0.008",
+    );
+    let mut simulation = start(&solved(&text, "0.005"), Precision::F64, 1);
+    let (mut last, mut time) = (simulation.attachment("stitch").unwrap(), 0.0);
+    while simulation.time() < 0.15 && simulation.attachment("stitch").unwrap().holds == 1 {
+        (last, time) = (simulation.attachment("stitch").unwrap(), simulation.time());
+        simulation.advance(1).unwrap();
+    }
+    simulation.advance(3).unwrap();
+    let reading = simulation.attachment("stitch").unwrap();
+    assert!(reading.holds == 0 && last.energy > 1e-5, "{reading:?} after {last:?}");
+    assert_eq!((reading.length, reading.loss, reading.energy), (last.length, last.energy, 0.0), "{last:?}");
+    near("time", reading.broke_at.unwrap(), time, 1.0, 1e-12);
+    near("time of removal", time, 0.1, 0.1, 0.06);
+}
+
+/// A cube that swings on a thread through its middle, which tears as it draws with half more than its weight: from then
+/// on it falls by g in each step. With the force of the thread at its beginning the first step changed the velocity by
+/// .26 g Δt, with the accelerations that this had made by .87 g Δt.
+#[test]
+fn what_hung_from_a_thread_falls_from_when_that_tears() {
+    let cube = |more: &str| {
+        let mesh = "Box(size: (0.01, 0.01, 0.01), cells: (1, 1, 1), elements: Hex8)";
+        format!("(mesh: {mesh}, material: \"m\" {more})")
+    };
+    let mut simulation = start(
+        &format!(
+            "(duration: 0.05, solver: Implicit(step: 1e-3, scheme: GeneralizedAlpha(), tolerance: 1e-10),
+            bodies: {{\"a\": {}, \"b\": {}}},
+            materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 1e5, poisson: 0.3))}},
+            constraints: [Fixed(body: \"a\", on: All)], loads: [Gravity(body: \"b\", acceleration: (0, 0, -9.81))],
+            attachments: [Suture(name: \"s\", from: (body: \"b\", at: (0.005, 0.005, -0.015)),
+                to: (body: \"a\", at: (0.005, 0.005, 0)), stiffness: 10, strength: 0.0145)],
+            probes: {{\"v\": (body: \"b\", on: All, what: Velocity)}})",
+            cube(""),
+            cube(", translate: (0, 0, -0.02)"),
+        ),
+        Precision::F64,
+        1,
+    );
+    while simulation.time() < 0.04 && simulation.attachment("s").unwrap().holds == 1 {
+        simulation.advance(1).unwrap();
+    }
+    near("time", simulation.attachment("s").unwrap().broke_at.unwrap(), 0.021, 0.021, 1e-9);
+    let mut before = simulation.probe("v").unwrap()[2];
+    for step in 1..6 {
+        simulation.advance(1).unwrap();
+        let now = simulation.probe("v").unwrap()[2];
+        near(&format!("step {step}"), now - before, -9.81e-3, 9.81e-3, 1e-6);
+        before = now;
+    }
 }
 
 /// A cube that hangs from a thread of fixed ends is at m g/k below where it is slack: the thread is inside the forces
@@ -112,6 +176,11 @@ fn glue_holds_and_breaks() {
     // before it breaks within a step of its growth, .65 mN at most
     near("strength", most, 200.0 * 1e-4, 200.0 * 1e-4, 0.04);
     assert!(reading.holds == 0 && reading.broken.len() == 16, "{reading:?}");
+    // there are no loads: the force that broke does no work on what flies apart, which was half of all there is
+    simulation.advance(1).unwrap();
+    let energies = simulation.energies().unwrap();
+    let (load_work, given) = (energies.load_work.unwrap(), energies.constraint_work.unwrap());
+    near("work of glue", load_work, -reading.loss, given, 0.01);
 }
 
 #[test]

@@ -44,6 +44,7 @@ mod lifted_tools;
 mod loads_that_grow;
 mod lost_surfaces;
 mod memory;
+mod quiet_books;
 mod rest;
 mod rims;
 mod rounded_places;

@@ -65,6 +65,34 @@ fn a_suture_tears_at_its_strength_and_what_it_stored_is_booked() {
     }
 }
 
+/// Where some of the mass that it is in goes a thread is softer: it tears where what it bears is its strength, not
+/// where it would be if all were there, and it stores what draws it.
+#[test]
+fn a_suture_in_what_is_left_of_its_tissue_tears_at_its_strength() {
+    let (strength, stiffness, slack) = (0.4, 50.0, 0.01);
+    let removal = "removal: [(body: \"low\", on: Box(min: (-1, 0.013, 0.013), max: (1, 1, 1)), when: At(0.1))],";
+    let text = pulled_apart(stiffness, strength).replace("constraints:", &format!("{removal} constraints:"));
+    for run in cpu_and_long_gpu() {
+        let mut simulation = run.start(&text);
+        let mut last = simulation.attachment("stitch").unwrap();
+        while simulation.time() < 0.95 && simulation.attachment("stitch").unwrap().holds == 1 {
+            last = simulation.attachment("stitch").unwrap();
+            let what = format!("{}: {last:?}", run.name);
+            let stored = 0.5 * last.force.z * (last.length - slack);
+            near(&what, last.energy, stored, strength * strength / stiffness, 1e-6);
+            assert_eq!(last.loss, 0.0, "{what}");
+            simulation.advance(1).unwrap();
+        }
+        let (reading, stretch) = (simulation.attachment("stitch").unwrap(), last.length - slack);
+        let what = format!("{}: {reading:?} after {last:?}", run.name);
+        assert!(reading.holds == 0 && reading.energy == 0.0, "{what}");
+        near(&what, last.force.z, strength, strength, 0.02);
+        // a third of the mass has gone
+        near(&what, last.force.z, stiffness * stretch * 2.0 / 3.0, strength, 1e-3);
+        near(&what, reading.loss, 0.5 * strength * stretch, 0.5 * strength * stretch, 0.02);
+    }
+}
+
 /// Of two free cubes momentum stays, and energy goes to and fro between the thread, motion and strain.
 #[test]
 fn a_suture_draws_two_cubes_together_and_keeps_momentum_and_energy() {
