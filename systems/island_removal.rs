@@ -17,8 +17,8 @@ use std::collections::BTreeMap;
 /// tool has taken in, which has to catch up before the next element goes: no volume is gone but what came through the
 /// tool's mouth. Islands with elements that the tool may not take stay.
 ///
-/// It is looked for them as often as for what passes criteria; what is a piece with what is found anew only where
-/// elements have gone. On a GPU this runs on the host.
+/// It is looked for them as often as [`ToolLooks`] says; what is a piece with what is found anew only where elements
+/// have gone. On a GPU this runs on the host.
 pub fn system() -> System {
     let system = System::built_in(
         "island_removal",

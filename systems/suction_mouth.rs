@@ -2,7 +2,6 @@
 //! `shaders/suction_presence.wgsl`, `shaders/suction_hidden.wgsl`, `shaders/suction_nodes.wgsl` and
 //! `shaders/suction_pressure.wgsl`.
 
-use super::element_removal::CRITERION_STEPS;
 use super::suction::parts_of;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
@@ -16,10 +15,10 @@ use bevy_ecs::prelude::*;
 use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Exposed faces in the mouth that are turned to it are sucked, those at its edge by the share that is within: in every
-/// tenth step it is looked which those are, and what share χ of the mouth they close, seen along its axis, with those
-/// of other bodies that the tool sucks at by the same mouth. An open mouth leaks: the pressure goes to Δp χ², and
-/// follows in the time that the scene names.
+/// Exposed faces in the mouth that are turned to it are sucked, those at its edge by the share that is within. As often
+/// as [`ToolLooks`] says it is looked which those are, and what share χ of the mouth they close, seen along its axis,
+/// with those of other bodies that the tool sucks at by the same mouth. An open mouth leaks: the pressure goes to Δp
+/// χ², and follows in the time that the scene names.
 ///
 /// A face is exposed while its element is there and its neighbour's is not: what removal bares is sucked at once.
 pub fn system() -> System {
@@ -45,12 +44,13 @@ fn is_of_one_body(world: &World) -> bool {
 
 fn suction_mouth(
     clock: Res<Clock>,
+    looks: Res<ToolLooks>,
     signals: Res<Signals>,
     mut all: Query<(&mut Suction, &OfBody)>,
     mut bodies: Query<BodyQuery>,
     blocks: Query<Option<&Alive>, With<Block>>,
 ) -> Result<(), Error> {
-    let is_due = clock.step.is_multiple_of(CRITERION_STEPS);
+    let is_due = clock.step.is_multiple_of(looks.0);
     // what is seen in each mouth, and what share of that bodies close
     let mut seen: BTreeMap<usize, Vec<Seen>> = BTreeMap::new();
     let mut shares: BTreeMap<usize, f64> = BTreeMap::new();
@@ -202,6 +202,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let blocks = BlockKernels::of_world(world, buffers);
     let all: Vec<(Suction, Entity)> =
         world.query::<(&Suction, &OfBody)>().iter(world).map(|(suction, body)| (suction.clone(), body.0)).collect();
+    let looks = *world.resource::<ToolLooks>();
     let mut kernels = Vec::new();
     let mut seen: Vec<Entity> = Vec::new();
     for (suction, body) in all {
@@ -214,7 +215,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
             for (place, &entity) in (0..).zip(&authoring.blocks) {
                 let block = blocks.iter().find(|block| block.entity == entity);
                 if let Some(block) = block.filter(|_| world.get::<Alive>(entity).is_some()) {
-                    kernels.push(with_step(presence(block, place, &suction.faces, buffers), world));
+                    kernels.push(with_step(presence(block, (place, looks), &suction.faces, buffers), world));
                 }
             }
         }
@@ -224,6 +225,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
             points: buffers.constants("places of nodes".into(), bytemuck::cast_slice(&points)),
             mouth: mouth(&suction, buffers),
             suction,
+            looks,
         };
         kernels.extend(of_tool.kernels(buffers).map(|kernel| with_step(kernel, world)));
     }
@@ -248,7 +250,12 @@ fn mouth(suction: &Suction, buffers: &mut dyn Buffers) -> BufferId {
 }
 
 /// Where each row of a block has its faces, and which of them are there.
-fn presence(block: &BlockKernels, place: u32, faces: &BodyFaces, buffers: &mut dyn Buffers) -> Kernel {
+fn presence(
+    block: &BlockKernels,
+    (place, looks): (u32, ToolLooks),
+    faces: &BodyFaces,
+    buffers: &mut dyn Buffers,
+) -> Kernel {
     let mut of_rows: Vec<(u32, u32)> =
         (0..).zip(&faces.elements).filter(|(_, of)| of.0 == place).map(|(face, of)| (of.1, face)).collect();
     of_rows.sort_unstable();
@@ -260,7 +267,7 @@ fn presence(block: &BlockKernels, place: u32, faces: &BodyFaces, buffers: &mut d
     Kernel::new("suction_presence", "suction_presence")
         .fragment(shader!("suction_presence"))
         .fragment(shader!("row"))
-        .fragment(criterion_due())
+        .fragment(criterion_due(looks))
         .threads(count as u32)
         .bind_uniform::<Presence>("presence", presence)
         .bind("faces_of_elements", buffers.constants("faces of elements".into(), bytemuck::cast_slice(&lists)))
@@ -274,6 +281,7 @@ struct OfTool {
     points: BufferId,
     mouth: BufferId,
     suction: Suction,
+    looks: ToolLooks,
 }
 
 impl OfTool {
@@ -282,7 +290,7 @@ impl OfTool {
             .fragment(shader)
             .fragment(shader!("suction_tool"))
             .fragment(shader!("row"))
-            .fragment(criterion_due())
+            .fragment(criterion_due(self.looks))
             .bind_uniform::<SuctionMouth>("mouth", self.mouth)
     }
 
@@ -336,7 +344,7 @@ impl OfTool {
 }
 
 /// Whether the criterion is due where a step begins.
-fn criterion_due() -> Fragment {
-    let text = format!("fn criterion_due() -> bool {{\n    return step.number % {CRITERION_STEPS}u == 0u;\n}}\n");
+fn criterion_due(looks: ToolLooks) -> Fragment {
+    let text = format!("fn criterion_due() -> bool {{\n    return step.number % {}u == 0u;\n}}\n", looks.0);
     Fragment::new("generated: when the criterion is due", text)
 }

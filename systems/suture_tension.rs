@@ -73,29 +73,31 @@ fn suture_tension(
         if state != Some(HOLDS) {
             continue;
         }
-        let Drawn { way, length, whole, left } = draw(suture, (&sutures, &signals), &bodies.as_readonly(), &blocks);
+        let Drawn { way, length, tension, energy, left } =
+            draw(suture, (&sutures, &signals), &bodies.as_readonly(), &blocks);
         // in a static analysis nothing tears: pseudo-steps are no way that a thread takes
         let becomes = match clock.relaxation {
             None if left <= 0.0 => CAME_OUT,
-            None if whole >= suture.strength => TORE,
+            None if tension >= suture.strength => TORE,
             _ => HOLDS,
         };
         // an implicit step is found with the force of a thread that tears at its end
         let pulls = becomes == HOLDS || clock.springs.is_some();
-        let tension = if pulls { left * whole } else { 0.0 };
-        if tension > 0.0 {
+        if pulls && tension > 0.0 {
             let force = way * (tension / length);
             pull(first, force, &mut bodies);
             pull(second, -force, &mut bodies);
         }
         let Some(mut state) = bodies.get_mut(first.body).ok().and_then(|columns| columns.state) else { continue };
-        let tension = if becomes == HOLDS { tension } else { 0.0 };
-        state.set(at + 2, tension);
-        state.set(at + 3, length);
+        state.set(at + 2, if becomes == HOLDS { tension } else { 0.0 });
+        // of what comes out length and energy are those of when it was last drawn
+        if becomes != CAME_OUT {
+            state.set(at + 3, length);
+            state.set(at + 4, energy);
+        }
         if becomes != HOLDS {
             state.set(at, becomes);
-            state.set(at + 1, clock.time());
-            state.set(at + 4, 0.5 * whole * whole / suture.stiffness);
+            state.set(at + 1, let_go_at(becomes, &clock));
         }
     }
     for mut columns in &mut bodies {
@@ -105,13 +107,22 @@ fn suture_tension(
     }
 }
 
+/// When a thread that now tears or comes out has let go (s): tissue goes between steps, and implicit ones look at their
+/// ends.
+fn let_go_at(becomes: f64, clock: &Clock) -> f64 {
+    let looks_at_end = clock.springs.is_some();
+    if becomes == CAME_OUT && looks_at_end { clock.time_at(clock.step.saturating_sub(1)) } else { clock.time() }
+}
+
 /// How a thread is drawn.
 struct Drawn {
     /// From its first end to the second (m), and how long that is.
     way: DVec3,
     length: f64,
-    /// Its tension (N), and the share of it that the tissue that is left bears.
-    whole: f64,
+    /// Its tension (N), and what it stores (J).
+    tension: f64,
+    energy: f64,
+    /// The share of its stiffness that the tissue that is left bears.
     left: f64,
 }
 
@@ -132,7 +143,9 @@ fn draw(
         true => mass_left(first, bodies).min(mass_left(second, bodies)),
         false => 0.0,
     };
-    Drawn { way, length, whole: suture.tension(length, signals.values()[suture.signal][0]), left }
+    let whole = suture.tension(length, signals.values()[suture.signal][0]);
+    let tension = left * whole;
+    Drawn { way, length, tension, energy: 0.5 * tension * whole / suture.stiffness, left }
 }
 
 /// Where an end is (m, from the reference).

@@ -1,7 +1,6 @@
 //! `tool_removal`: chooses the elements that tools take. `shaders/tool_removal.wgsl` is its twin, with
 //! `shaders/tool_removal_choice.wgsl` and `shaders/tool_removal_due.wgsl`.
 
-use super::element_removal::criterion_steps;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::block_kernel::BlockKernels;
@@ -21,10 +20,10 @@ use glam::DVec3;
 /// are nearest to its mouth first, of equally near ones that of the lower number. So the volume that is gone is that
 /// which was taken in, to one element, whatever the mesh.
 ///
-/// What is in reach is looked at as often as criteria are; while there is nothing, nothing is taken in. Where nothing
-/// is left in reach, no more than the largest element's volume stays taken in, and what the steps from one look to the
-/// next take: the rest was no tissue. While the rate is 0 or below nothing goes, and nothing is given back. An element
-/// that is chosen is due at once: `element_removal` takes it in the same step.
+/// What is in reach is looked at as often as [`ToolLooks`] says; while there is nothing, nothing is taken in. Where
+/// nothing is left in reach, no more than the largest element's volume stays taken in, and what the steps from one look
+/// to the next take: the rest was no tissue. While the rate is 0 or below nothing goes, and nothing is given back. An
+/// element that is chosen is due at once: `element_removal` takes it in the same step.
 pub fn system() -> System {
     System::built_in(
         "tool_removal",
@@ -59,12 +58,13 @@ fn by_rate(removals: &ToolRemovals) -> impl Iterator<Item = (usize, &ToolRemoval
 
 fn tool_removal(
     clock: Res<Clock>,
+    looks: Res<ToolLooks>,
     cpu: Res<Cpu>,
     signals: Res<Signals>,
     mut bodies: Query<BodyQuery>,
     mut blocks: Query<BlockQuery>,
 ) {
-    let steps = criterion_steps(&clock);
+    let steps = looks.0;
     for (removals, mut intake, authoring, rest, displacement) in &mut bodies {
         let place = |node: u32| rest.0[node as usize] - removals.reference + displacement.vector(node as usize);
         for (number, removal) in by_rate(removals) {
@@ -194,7 +194,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let blocks = BlockKernels::of_world(world, buffers);
     let all: Vec<(Entity, ToolRemovals)> =
         world.query::<(Entity, &ToolRemovals)>().iter(world).map(|(body, removals)| (body, removals.clone())).collect();
-    let steps = criterion_steps(world.resource::<Clock>());
+    let steps = world.resource::<ToolLooks>().0;
     let mut kernels = Vec::new();
     for (body, removals) in all {
         let (Some(authoring), Some(rest)) = (world.get::<Authoring>(body), world.get::<RestPosition>(body)) else {

@@ -10,8 +10,8 @@ use bevy_ecs::prelude::*;
 use std::borrow::Cow;
 
 /// Elements whose centroids are in a tool's reach and that pass its threshold are due at once, `burst` of them at most
-/// at a time, those nearest to the mouth first. It is looked for them as often as for what passes criteria, while the
-/// course of the removal is above 0. On a GPU this runs on the host.
+/// at a time, those nearest to the mouth first. It is looked for them as often as [`ToolLooks`] says, while the course
+/// of the removal is above 0. On a GPU this runs on the host.
 pub fn system() -> System {
     let system = System::built_in(
         "tool_threshold",

@@ -365,7 +365,8 @@ fn what_embeds_sinew_uses_the_crates_of_a_build() {
     }
 }
 
-/// The crate as it is published holds what it is compiled from, and that is under a megabyte (2²⁰ B).
+/// The crate as it is published holds what it is compiled from, and that is under a megabyte and a half:
+/// nothing else has slipped in.
 #[test]
 fn the_package_is_small_and_whole() {
     let place = tempfile::tempdir().unwrap();
@@ -383,7 +384,7 @@ fn the_package_is_small_and_whole() {
     package(&[&below[..], &bare].concat());
     let packed = place.path().join(format!("package/sinew-{}.crate", env!("CARGO_PKG_VERSION")));
     let bytes = std::fs::metadata(&packed).unwrap().len();
-    assert!(bytes > 500_000 && bytes < 1 << 20, "{bytes} B");
+    assert!(bytes > 500_000 && bytes < 3 << 19, "{bytes} B");
     let list = package(&["--list"]);
     for ending in ["rs", "wgsl"] {
         let of_tests = |file: &&String| file.contains("/tests/") || file.ends_with("/tests.rs");

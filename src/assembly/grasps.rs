@@ -77,6 +77,7 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
         let Some(grasps) = world.get::<Grasps>(body.entity) else { continue };
         for (bit, grasp) in grasps.grasps.iter().enumerate() {
             in_jaws(assembly, (name, body), (grasps, grasp, bit), world, diagnostics);
+            led_nodes(name, body, (grasps, grasp, bit), world, diagnostics);
         }
     }
     if world.resource::<Clock>().relaxation.is_some() {
@@ -87,6 +88,25 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
         if scene.attachments.iter().any(|attachment| attachment.tool() == Some(name)) {
             jumps(name, tool, "nodes that it holds are torn along", diagnostics);
         }
+    }
+}
+
+/// Tells of a tool all of whose nodes are fixed or prescribed: no force could move them.
+fn led_nodes(
+    name: &str,
+    body: &BodyParts,
+    (grasps, grasp, bit): (&Grasps, &Grasp, usize),
+    world: &World,
+    diagnostics: &mut Diagnostics,
+) {
+    let Some(axes) = world.get::<ConstrainedAxes>(body.entity) else { return };
+    let mut may = grasps.rows.iter().zip(&grasps.masks).filter(|(_, mask)| **mask >> bit & 1 == 1);
+    if may.all(|(&row, _)| axes.hold(row as usize)) {
+        let message =
+            format!("all nodes of `{name}` that the tool `{}` may hold are fixed or prescribed", grasp.tool.tool);
+        diagnostics
+            .warn_at(format!("attachments[{}]", grasp.number).as_str(), message)
+            .note("no force moves those: it bears nothing, and never breaks");
     }
 }
 

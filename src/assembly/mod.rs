@@ -30,6 +30,7 @@ mod surface_contacts;
 mod surface_overlaps;
 mod sutures;
 mod time_step;
+mod tool_looks;
 mod tool_overlaps;
 mod tool_removal;
 mod user_laws;
@@ -144,6 +145,7 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
         blocks.for_each(|&block| element_removal::insert_columns(assembly.precision, block, world));
     }
     suction::spawn(assembly, world, diagnostics);
+    tool_looks::insert(assembly, world);
     contacts::spawn_idle(assembly, world);
     if scene.is_static() {
         relaxation::insert_inertial_masses(assembly, world);

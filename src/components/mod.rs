@@ -113,7 +113,9 @@ pub(crate) use tool::IdleTools;
 #[doc(hidden)]
 pub use tool::{FELT_NUMBERS, Hand, Key, Pose, TOUCH_NUMBERS, ToolContact, ToolContacts, ToolMotion, ToolTouch};
 #[doc(hidden)]
-pub use tool_removal::{INTAKE_NUMBERS, Island, Islands, Mouth, ToolIntake, ToolReach, ToolRemoval, ToolRemovals};
+pub use tool_removal::{
+    INTAKE_NUMBERS, Island, Islands, Mouth, ToolIntake, ToolLooks, ToolReach, ToolRemoval, ToolRemovals,
+};
 #[doc(hidden)]
 pub use touched::Touched;
 

@@ -8,7 +8,8 @@ use glam::DVec3;
 columns! {
     /// What each suture is to the body that its first point is in, [`SUTURE_NUMBERS`] a suture: 0 while it holds, 1
     /// where its tension was too large for it, 2 where the tissue that it was in has gone; when that was (s); its
-    /// tension (N) and its length (m) at the beginning of the last step; what it stored when it tore (J).
+    /// tension (N), its length (m) and what it stores (J) at the beginning of the last step: the length and what it
+    /// stored stay when it is gone.
     SutureState(Reals) = "suture_state", State of Touch, Other;
     /// Force of sutures on each of [`Sutured::rows`] in this step (N), a vector a node.
     SutureForce(Reals) = "suture_force", Scratch of Touch, Other;

@@ -16,6 +16,10 @@ columns! {
     ToolReach(Vec<u32>) = "tool_reach", Scratch of Removal, Other;
 }
 
+/// How many steps there are from one look at what tools take and suck to the next.
+#[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ToolLooks(pub u64);
+
 /// Where a tool takes elements away: in its frame all that is no farther than `reach` from this.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mouth {

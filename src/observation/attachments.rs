@@ -17,7 +17,7 @@ pub struct AttachmentReading {
     pub length: f64,
     /// What a suture stores (J); 0 of others.
     pub energy: f64,
-    /// What has been lost (J): what a suture stored when it tore, and what ties have taken.
+    /// What has been lost (J): what a suture stored when it tore or came out, and what ties have taken.
     pub loss: f64,
     /// When the first of its points broke (s), if one did.
     pub broke_at: Option<f64>,
@@ -65,12 +65,13 @@ fn of_suture(suture: &Suture, reference: DVec3, world: &World) -> Option<Attachm
     let (tension, length) = (state.get(at + 2), state.get(at + 3));
     let [from, to] = [0, 1].map(|end| when_pulled(&suture.ends[end], reference, world));
     let holds = state.get(at) == 0.0;
+    let [energy, loss] = if holds { [state.get(at + 4), 0.0] } else { [0.0, state.get(at + 4)] };
     Some(AttachmentReading {
         force: (to - from).normalize_or_zero() * tension,
         holds: usize::from(holds),
         length,
-        energy: if holds { 0.5 * tension * tension / suture.stiffness } else { 0.0 },
-        loss: state.get(at + 4),
+        energy,
+        loss,
         broke_at: (!holds).then(|| state.get(at + 1)),
         broken: Vec::new(),
     })

@@ -178,9 +178,9 @@ pub(super) fn gives_back(memory: &mut GuardMemory, made: f64, settings: &GuardSe
 /// slides, bars that are dragged), steps of an egg on a block whose friction is not found 24 to 67 %.
 const OF_TURNOVER: f64 = 0.1;
 
-/// Warns of implicit steps whose formula has made energy, and gives the most that this has been as a share of the largest
-/// energy so far; 0 where it is not worth a warning. What it makes is an imbalance, and stays one where a later step
-/// takes it.
+/// Warns of implicit steps whose formula has made energy, and gives the most that this has been as a share of the
+/// largest energy so far; 0 where it is not worth a warning. What it makes is an imbalance, and stays one where a later
+/// step takes it.
 pub(super) fn made_by_formula(memory: &mut GuardMemory, settings: &GuardSettings, world: &World) -> f64 {
     let limit = settings.limits.energy.warn;
     let made = -memory.least_scheme_loss - memory.rounding;

@@ -129,8 +129,8 @@ pub(super) fn kinetic(world: &World) -> f64 {
 }
 
 /// What contacts of free tools gave (J), of each such a share at most of what gravity would do on it over a way as long
-/// as its radius of gyration: of tools that rest on something nothing else tells what is much. Steps of nodes are on the
-/// host.
+/// as its radius of gyration: of tools that rest on something nothing else tells what is much. Steps of nodes are on
+/// the host.
 pub(super) fn given_by_weight(world: &World, share: f64) -> f64 {
     let (tools, motions) = (world.get_resource::<FreeTools>(), world.get_resource::<FreeMotions>());
     let (Some((tools, motions)), Some(signals)) = (tools.zip(motions), world.get_resource::<Signals>()) else {

@@ -236,8 +236,8 @@ fn take_touch(world: &mut World, body: Entity, other: &World, from: Entity) {
             }
             ToolTouch::NAME => tool_places([(world, body), (other, from)]),
             FaceTouch::NAME => face_places([(world, body), (other, from)]),
-            // tension and length, and the force; what became of them begins with the motion
-            SutureState::NAME if !springs => some_of_each(target.len() / number.max(1), SUTURE_NUMBERS, [2, 2]),
+            // tension, length and energy, and the force; what became of them begins with the motion
+            SutureState::NAME if !springs => some_of_each(target.len() / number.max(1), SUTURE_NUMBERS, [2, 3]),
             TieState::NAME if !springs => some_of_each(target.len() / number.max(1), TIE_NUMBERS, [2, 3]),
             // one of each after the other
             _ => vec![Same { numbers: 1, places: [0, 0], count: target.len() / number.max(1) }],

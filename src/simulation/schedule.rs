@@ -1,9 +1,9 @@
 //! The order of systems: as the scene writes it, or derived from what the scene contains.
 
 use super::known::Known;
-use crate::components::Clock;
+use crate::components::ToolLooks;
 use crate::scene::{Diagnostics, choice};
-use crate::systems::{Phase, System, criterion_steps};
+use crate::systems::{Phase, System};
 use bevy_ecs::prelude::*;
 
 /// A system of the schedule, and why it is there.
@@ -23,8 +23,8 @@ pub struct Scheduled<'a> {
 impl<'a> Scheduled<'a> {
     fn new(system: &'a System, because: String, world: &World) -> Self {
         let on_device = system.device.is_some() && (system.device_when)(world);
-        // those of the engine that do not run in every step look at criteria
-        let most = if system.custom { u64::MAX } else { criterion_steps(world.resource::<Clock>()) };
+        // those of the engine that do not run in every step look at what tools take
+        let most = if system.custom { u64::MAX } else { world.resource::<ToolLooks>().0 };
         Self { system, because, every: system.every.clamp(1, most), interval: None, on_device }
     }
 }

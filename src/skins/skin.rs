@@ -1,11 +1,13 @@
 //! A fine surface on a body.
 
+use super::carrier::Carriers;
 use super::embedding::Embedding;
 use crate::mesh::Mesh;
 use crate::mesh::Triangles;
 use bevy_ecs::prelude::Component;
 use glam::DVec3;
 use std::collections::HashMap;
+use std::sync::OnceLock;
 
 /// The points of a surface as pictures have them: one for each place and texture coordinates there.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -51,6 +53,8 @@ pub struct Skin {
     pictured: Pictured,
     /// With all elements alive.
     whole: Embedding,
+    /// The element that carries each triangle's centroid then: found when the first elements have gone.
+    under: OnceLock<Vec<Option<usize>>>,
     /// With those that were alive when somebody last looked.
     now: Embedding,
     alive: Vec<bool>,
@@ -61,7 +65,8 @@ impl Skin {
     pub fn new(mesh: Mesh, surface: Triangles) -> Self {
         let whole = Embedding::new(&mesh, &surface.points, &|_| true);
         let pictured = Pictured::new(&surface);
-        Self { alive: vec![true; mesh.element_count()], now: whole.clone(), whole, pictured, surface, mesh }
+        let (alive, now) = (vec![true; mesh.element_count()], whole.clone());
+        Self { mesh, surface, pictured, whole, under: OnceLock::new(), now, alive }
     }
 
     /// The surface as it is before anything moves (m).
@@ -85,15 +90,32 @@ impl Skin {
         &self.pictured
     }
 
-    /// The triangles that are left: all but those of which the elements of all three corners have gone. By rows of the
-    /// surface's points, and of those that pictures have.
+    /// The triangles that are left: all but those of which the element has gone that carried the centroid when all
+    /// lived. Points on what several elements share are carried by the first of these; centroids seldom lie there. By
+    /// rows of the surface's points, and of those that pictures have.
     pub fn triangles(&self) -> Vec<([u32; 3], [u32; 3])> {
-        let left = |point: u32| {
-            let carrier = self.whole.carriers().get(point as usize).and_then(Option::as_ref);
-            carrier.is_some_and(|carrier| self.alive.get(carrier.element).copied().unwrap_or_default())
+        let both = self.surface.triangles.iter().zip(&self.pictured.triangles).map(|(a, b)| (*a, *b));
+        if self.alive.iter().all(|&lives| lives) {
+            return both.collect();
+        }
+        let under = self.under.get_or_init(|| self.elements_under());
+        let left = |element: Option<usize>| element.and_then(|element| self.alive.get(element)) == Some(&true);
+        both.zip(under).filter(|(_, element)| left(**element)).map(|(both, _)| both).collect()
+    }
+
+    /// What carries the centroids of the triangles while all elements live: where one carries all corners it does.
+    fn elements_under(&self) -> Vec<Option<usize>> {
+        let carriers = Carriers::new(&self.mesh, &|_| true);
+        let of_point = |point: u32| self.whole.carriers().get(point as usize)?.as_ref().map(|carrier| carrier.element);
+        let of_triangle = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(of_point);
+            if a.is_some() && a == b && b == c {
+                return a;
+            }
+            let centroid = corners.iter().map(|&point| self.surface.points[point as usize]).sum::<DVec3>() / 3.0;
+            carriers.carrier(centroid).map(|carrier| carrier.element)
         };
-        let both = self.surface.triangles.iter().zip(&self.pictured.triangles);
-        both.filter(|(corners, _)| corners.iter().any(|&point| left(point))).map(|(a, b)| (*a, *b)).collect()
+        self.surface.triangles.iter().map(of_triangle).collect()
     }
 
     /// What carries the points now.

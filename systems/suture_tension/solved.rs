@@ -19,12 +19,12 @@ pub(crate) fn find(world: &mut World, first_axis: impl Fn(Entity) -> Option<usiz
         if state.map(|state| state.get(SUTURE_NUMBERS * suture.place)) != Some(HOLDS) {
             continue;
         }
-        let Drawn { way, length, whole, left } = draw(suture, (sutures, signals), &bodies, &blocks);
+        let Drawn { way, length, tension, left, .. } = draw(suture, (sutures, signals), &bodies, &blocks);
         // what is no number is told by guards, not lost
         if length < suture.slack(signals.values()[suture.signal][0]) || length == 0.0 || left == 0.0 {
             continue;
         }
-        let (way, tension) = (way / length, left * whole);
+        let way = way / length;
         let along = DMat3::from_cols(way * way.x, way * way.y, way * way.z);
         let slope = along * (left * suture.stiffness) + (DMat3::IDENTITY - along) * (tension / length);
         let ends = [(first, 1.0), (second, -1.0)];

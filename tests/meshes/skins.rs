@@ -174,13 +174,37 @@ fn points_whose_element_has_gone_go_with_the_nearest_that_lives() {
         skin.update_alive(then.clone());
         assert_eq!(skin.embedding(), &now, "{kind:?}: the way there does not matter");
         let shown: Vec<[u32; 3]> = skin.triangles().into_iter().map(|(triangle, _)| triangle).collect();
-        let gone = |point: &u32| !then[whole.carriers()[*point as usize].as_ref().unwrap().element];
-        for triangle in surface(&points).triangles {
-            assert_eq!(shown.contains(&triangle), !triangle.iter().all(gone), "{kind:?}");
+        let centroids: Vec<DVec3> = points.as_chunks::<3>().0.iter().map(|[a, b, c]| (*a + *b + *c) / 3.0).collect();
+        let under = Embedding::new(&mesh, &centroids, &|_| true);
+        let element = |of: &Embedding, row: usize| of.carriers()[row].as_ref().unwrap().element;
+        for (number, triangle) in surface(&points).triangles.into_iter().enumerate() {
+            let [a, b, c] = triangle.map(|point| element(&whole, point as usize));
+            let under = if a == b && b == c { a } else { element(&under, number) };
+            assert_eq!(shown.contains(&triangle), then[under], "{kind:?}");
         }
         skin.update_alive(vec![false; mesh.element_count()]);
         assert!(skin.triangles().is_empty());
         assert!(skin.places(&mesh.points).iter().all(|place| place.is_finite()));
+    }
+}
+
+/// Points on what elements share are carried by the first of these; that keeps no triangle of another.
+#[test]
+fn all_of_a_skin_that_lies_on_an_element_goes_with_it_whatever_its_number() {
+    for (kind, mesh) in meshes() {
+        let faces = mesh.surface();
+        let all: Vec<([u32; 3], usize)> =
+            faces.iter().flat_map(|face| face.triangles().map(|corners| (corners, face.element as usize))).collect();
+        let triangles = all.iter().map(|(corners, _)| *corners).collect();
+        let surface = Triangles { points: mesh.points.clone(), triangles, ..Triangles::default() };
+        let mut skin = Skin::new(mesh.clone(), surface);
+        for gone in (0..mesh.element_count()).step_by(7).chain([mesh.element_count() - 1]) {
+            skin.update_alive((0..mesh.element_count()).map(|element| element != gone).collect());
+            let left: Vec<[u32; 3]> = skin.triangles().into_iter().map(|(corners, _)| corners).collect();
+            let expected: Vec<[u32; 3]> =
+                all.iter().filter(|(_, element)| *element != gone).map(|(corners, _)| *corners).collect();
+            assert!(left == expected, "{kind:?}, {gone}: {} left, not {}", left.len(), expected.len());
+        }
     }
 }
 

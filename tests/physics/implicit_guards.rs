@@ -167,8 +167,8 @@ fn egg_on_what_is_moved(share: f64, (step, more): (f64, &str), way: f64, damping
     )
 }
 
-/// That something is told to go, be it by less than an atom, is no reason to take what leads away: with a tolerance of a
-/// tenth of all forces no step may leave more than it began with (13 and 7 times that, and the runs went on).
+/// That something is told to go, be it by less than an atom, is no reason to take what leads away: with a tolerance of
+/// a tenth of all forces no step may leave more than it began with (13 and 7 times that, and the runs went on).
 #[test]
 fn what_is_moved_as_told_may_leave_no_more_than_what_is_not() {
     for (share, step, way) in [(20.0, 1e-3, 1e-14), (12.0, 2e-3, 1e-10)] {

@@ -170,6 +170,18 @@ fn what_was_no_tissue_is_not_taken_elsewhere() {
     }
 }
 
+/// In ten steps it goes twice as far as it reaches: it is looked more often than that.
+#[test]
+fn a_quick_tip_leaves_no_gaps() {
+    let path = "(t: 0, at: (0.001, 0.005, 0.01)), (t: 0.002, at: (0.001, 0.005, 0.01)), \
+                (t: 0.012, at: (0.039, 0.005, 0.01))";
+    for run in cpu_and_long_gpu() {
+        let mut simulation = run.start(&passed(path, "reach: 1e-4, rate: 1"));
+        simulation.advance_to(0.014).unwrap();
+        near(&format!("{}: all in its way", run.name), gone(&mut simulation), 32.0 * CELL, CELL, 1e-3);
+    }
+}
+
 /// What a tool has taken in of a cell when it leaves the tissue is there when it comes again: in ten visits of .4 cells
 /// each four go.
 #[test]

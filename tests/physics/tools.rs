@@ -165,7 +165,7 @@ fn the_work_of_a_tool_is_accounted_for() {
                 run.bound(5e-3, 5e-3),
             );
             near("loads do what tools do", energies.load_work.unwrap(), work, scale, run.bound(1e-9, 1e-4));
-            // what accelerates with the tool goes half a step behind it: of the largest force, .1 N, at .04 m/s
+            // where the tool turns at once what slips does so half a step later: by the largest force, .1 N, at .04 m/s
             let behind = 0.1 * 0.04 * simulation.time_step();
             assert!(reading.loss.unwrap() > -behind, "{}: {reading:?}", run.name);
         }

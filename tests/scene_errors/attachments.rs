@@ -58,6 +58,11 @@ fn what_is_wrong_with_a_grasp_is_told_where_it_stands() {
             "Grasp(tool: \"forceps\", closed: Step(start: 0.05), on: Plane(normal: (0, 0, 1), at: 0), reach: 0.01)",
             "5: warning: as `b` is at the start, nothing of it is in the jaws of `forceps` when they close | at 5.000e-2 s",
         ),
+        (
+            "Grasp(tool: \"forceps\", closed: Step(), on: Plane(normal: (0, 0, 1), at: 0))",
+            "5: warning: all nodes of `b` that the tool `forceps` may hold are fixed or prescribed | no force moves those: it \
+             bears nothing",
+        ),
         (&many, "5: error: at most 8 grasps may hold a body"),
         (&many, "5: error: this tool holds the same nodes by attachments[0] already"),
         (&twice, "5: error: this tool holds the same nodes by attachments[0] already"),

@@ -89,6 +89,12 @@ fn what_is_wrong_with_a_tool_is_told_with_what_is_allowed() {
             "4: error: the tool would be turned by 180 degrees for its axis to go through this | 120 degrees are allowed",
         ),
         (
+            "(shape: Capsule(length: 0.2, radius: 0.06), at: (0.05, 0.05, 0.2), pivot: (0.05, 0.05, 0.5), \
+             moves: [(rotation: (150, 0, 0), curve: Smooth(end: 0.1))])",
+            TOUCH,
+            "4: error: the tool would be turned by up to 150 degrees for its axis to go through this | 120 degrees are",
+        ),
+        (
             "(shape: Sphere(radius: 0.06), at: (0.05, 0.05, 0.2), pivot: (0, 0, 1), port: (name: \"h\", speed: 0.1))",
             TOUCH,
             "4: error: a `pivot` beside a `port`: a hand turns the tool | leave one of both out; `path` and `moves` go with",
@@ -137,6 +143,15 @@ fn what_is_wrong_with_a_tool_is_told_with_what_is_allowed() {
         println!("{found}");
         assert!(found.contains(expected), "{tool} {contact}:\n{found}\nexpected\n{expected}");
     }
+}
+
+/// About its own axis a shaft may turn as often as it is to.
+#[test]
+fn a_shaft_that_spins_in_its_pivot_has_no_complaints() {
+    let shaft = "(shape: Capsule(length: 0.2, radius: 0.06), at: (0.05, 0.05, 0.2), pivot: (0.05, 0.05, 0.5), \
+        moves: [(rotation: (0, 0, 3600), curve: Smooth(end: 0.1))])";
+    let found = told(shaft, TOUCH, "");
+    assert!(!found.contains("degrees"), "{found}");
 }
 
 #[test]

@@ -178,7 +178,7 @@ impl Monitor {
         // these is a part of what is removed
         assert!(spent <= 1.02 * work && spent + gone >= 0.98 * work, "{spent} J of {work} J: {e:?}");
         let tip = &summary.tools[TIP];
-        // what goes with the tip is half a step behind it; as long as it only sucks it does nothing
+        // where the tip turns at once what slips does so half a step later; as long as it only sucks it does nothing
         assert!(tip.loss.unwrap() >= -1e-3 * tip.work.unwrap() && tip.loss.unwrap() <= tip.work.unwrap(), "{tip:?}");
         // means over 10 ms, and the peak
         let mut worst = 0.0_f64;

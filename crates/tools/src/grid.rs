@@ -112,6 +112,7 @@ impl DistanceGrid {
         let (farthest, mean) = grid.off(&closed.surface);
         grid.surface_error = farthest;
         let lost = Lost::of(&grid, &closed, &tree)?;
+        grid.check_volume(&closed.surface)?;
         grid.notes = closed.notes;
         if mean > COARSE * spacing {
             grid.notes.push(format!(
@@ -150,6 +151,23 @@ impl DistanceGrid {
             Some(&first) => Err(SurfaceError::Crosses { at: self.origin + self.spacing * first, count: wrong.len() }),
             None => Ok(()),
         }
+    }
+
+    /// That it has as much inside as the triangles enclose, but for what may be lost at a surface: half a spacing on
+    /// either side.
+    fn check_volume(&self, surface: &Triangles) -> Result<(), SurfaceError> {
+        let area_of = |triangle: usize| {
+            let [a, b, c] = surface.corners(triangle);
+            (b - a).cross(c - a).length() / 2.0
+        };
+        let area: f64 = (0..surface.triangles.len()).map(area_of).sum();
+        let share = |value: &f32| (0.5 - f64::from(*value) / self.spacing).clamp(0.0, 1.0);
+        let inside = self.values.iter().map(share).sum::<f64>() * self.spacing.powi(3);
+        let enclosed = self.moments.0;
+        if (enclosed - inside).abs() > area * self.spacing {
+            return Err(SurfaceError::Twice { enclosed, inside });
+        }
+        Ok(())
     }
 
     /// How deep the shallowest point is (m) that lies halfway between two sides: none of its neighbours is deeper, the

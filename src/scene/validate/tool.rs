@@ -134,19 +134,33 @@ fn pivot(validator: &mut Validator, path: &Path, tool: &Tool, point: DVec3) {
     }
     for place in tool.places() {
         let axis = turned(place.rotation) * DVec3::Z;
-        let angle = axis.angle_between(point - place.at).to_degrees();
+        let turns = turns_across(tool, axis);
+        let angle = axis.angle_between(point - place.at).to_degrees() + turns;
         if angle > MOST_TURNED {
+            let up_to = if turns > 0.0 { "up to " } else { "" };
+            let message = format!("the tool would be turned by {up_to}{angle:.0} degrees for its axis to go through this");
             validator
                 .out
-                .error_at(
-                    path,
-                    format!("the tool would be turned by {angle:.0} degrees for its axis to go through this"),
-                )
+                .error_at(path, message)
                 .note(format!("{MOST_TURNED} degrees are allowed: there are two ways to turn it half round"))
                 .note("let `rotation` point its axis z, from the tip along the shaft, about that way");
             return;
         }
     }
+}
+
+/// By how many degrees moves may turn an axis at most: about what it goes along they do not.
+fn turns_across(tool: &Tool, axis: DVec3) -> f64 {
+    let mut sum = 0.0_f64;
+    for part in tool.moves.iter().filter(|part| part.rotation != DVec3::ZERO) {
+        let [low, high] = part.curve.range();
+        let about = part.rotation.length() * low.abs().max(high.abs());
+        let between = part.rotation.angle_between(axis).to_degrees();
+        // how far off the axis may be from what it is turned about, as others have turned it
+        let off = (between.min(180.0 - between) + sum).min(90.0);
+        sum += (about * off.to_radians().sin()).min(2.0 * off);
+    }
+    sum
 }
 
 fn port(scene_: &Scene, validator: &mut Validator, tool: &str, path: &Path, port: &Port) {

@@ -2,6 +2,7 @@
 
 use super::super::step_change::keep_memories;
 use super::axes::Axes;
+use super::bonds::may_let_go;
 use super::forces_before::ForcesBefore;
 use crate::components::*;
 use bevy_ecs::prelude::*;
@@ -20,9 +21,11 @@ fn is_tried_at_rest(column: &ColumnAccess) -> bool {
 }
 
 /// Whether forces at the end of a step go on from what a column had at its beginning, and it has another when the step
-/// is found.
+/// is found. Threads and ties that let go at its end do not hold any more.
 fn is_carried_on(column: &ColumnAccess) -> bool {
-    column.role == Role::State && [Subject::Memory, Subject::Touch].contains(&column.subject)
+    let of_attachments = [SutureState::NAME, TieState::NAME].contains(&column.name);
+    let subjects = [Subject::Memory, Subject::Touch];
+    column.role == Role::State && subjects.contains(&column.subject) && !of_attachments
 }
 
 /// These columns as they were at the beginning of the step, and forces.
@@ -48,8 +51,8 @@ impl Kept {
         self.forces.read(world, axes);
         if self.columns.is_empty() {
             let tried: fn(&ColumnAccess) -> bool = if self.of_rest { is_tried_at_rest } else { is_tried };
-            // where elements may go, forces are taken once more
-            let loses = is_anywhere::<Alive>(world);
+            // where elements may go, or threads and ties let go, forces are taken once more
+            let loses = is_anywhere::<Alive>(world) || may_let_go(world);
             self.columns = find(world, |column| tried(column) || loses && is_carried_on(column));
         }
         for (column, entity, bytes) in &mut self.columns {

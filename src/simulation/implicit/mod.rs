@@ -2,6 +2,7 @@
 //! are ([`trial`]), Newton's iterations find the place ([`newton`]), and what comes after in a step runs then.
 
 mod axes;
+mod bonds;
 mod by_parts;
 mod conjugate_gradients;
 mod contact_work;
@@ -95,12 +96,14 @@ impl Simulation {
         Ok(())
     }
 
-    /// Takes the forces at the end of an implicit step once more where elements have gone since, of so many.
+    /// Takes the forces at the end of an implicit step once more where elements have gone since, of so many, and where
+    /// a thread or a tie has let go in it, with whose force it was found.
     pub(super) fn renew_forces(&mut self, step: u64, before: usize) -> Result<(), Error> {
-        if !bring_removal(&mut self.world, before)? {
+        let went = bring_removal(&mut self.world, before)?;
+        let Some(implicit) = self.solver.implicit_mut() else { return Ok(()) };
+        if !went && !implicit.has_let_go(&self.world) {
             return Ok(());
         }
-        let Some(implicit) = self.solver.implicit_mut() else { return Ok(()) };
         implicit.renew_forces(&mut self.world, &mut self.entries, step)
     }
 }

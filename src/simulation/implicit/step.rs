@@ -3,6 +3,7 @@
 use super::super::ScheduledPass;
 use super::super::explain::SolverInUse;
 use super::axes::{Axes, Motion};
+use super::bonds::Bonds;
 use super::contact_work::{TouchedBefore, rubs};
 use super::device::{bring_state, send_state};
 use super::formula::Formula;
@@ -34,6 +35,7 @@ pub(in crate::simulation) struct Implicit {
     axes: Axes,
     iterations: Iterations,
     springs: Springs,
+    bonds: Bonds,
     /// Whether work is added up.
     works: bool,
     control: Option<StepControl>,
@@ -61,7 +63,7 @@ impl Implicit {
         let iterations = Iterations::new(settings, preconditioner, &axes, world);
         let works = scene.output.energies_every.is_some();
         let control = adaptive.map(|asked| StepControl::of(asked, step, &axes, world));
-        Some(Self { axes, iterations, springs: Springs::default(), works, control })
+        Some(Self { axes, iterations, springs: Springs::default(), bonds: Bonds::default(), works, control })
     }
 
     /// What chooses their lengths by their errors.
@@ -102,6 +104,7 @@ impl Implicit {
         let told = self.iterations.report;
         let clock = *world.resource::<Clock>();
         bring_state(world)?;
+        self.bonds.note(world);
         self.iterations.kept.keep(world, &self.axes);
         let found = self.find(world, passes, &clock);
         world.resource_mut::<Clock>().step = clock.step;
@@ -135,11 +138,17 @@ impl Implicit {
         Ok(Taken::Taken)
     }
 
-    /// Takes the forces at the end of a step once more, for elements have gone since: the next one begins with them. So
-    /// do the accelerations of nodes that have lost mass, where they are carried on.
+    /// Whether a thread or a tie has let go in the last step.
+    pub fn has_let_go(&self, world: &World) -> bool {
+        self.bonds.has_let_go(world)
+    }
+
+    /// Takes the forces at the end of a step once more, for elements have gone since, or something has let go: the next
+    /// one begins with them. So do the accelerations of nodes that have lost mass or are let go, where they are carried
+    /// on.
     pub fn renew_forces(&mut self, world: &mut World, passes: &mut [ScheduledPass], step: u64) -> Result<(), Error> {
         bring_state(world)?;
-        let Self { axes, iterations, springs, .. } = self;
+        let Self { axes, iterations, springs, bonds, .. } = self;
         let Iterations { settings, motion, space, kept, report, .. } = &mut *iterations;
         let (clock, masses) = (*world.resource::<Clock>(), motion.mass.clone());
         let times = [clock.time_at(step), clock.time_at(step + 1)];
@@ -153,7 +162,9 @@ impl Implicit {
         trial.present_forces(&mut space.net)?;
         trial.springs.press(1.0, &motion.free, &mut space.net);
         if settings.formula.needs_acceleration() {
-            accelerate(&mut trial, motion, &space.net, |node| motion.mass.get(node) != masses.get(node));
+            let let_go = bonds.let_go(trial.world, axes);
+            let has_changed = |node| motion.mass.get(node) != masses.get(node) || let_go.binary_search(&node).is_ok();
+            accelerate(&mut trial, motion, &space.net, has_changed);
         }
         kept.forces.read(trial.world, axes);
         trial.springs.load(&mut kept.forces.external);
@@ -168,7 +179,7 @@ impl Implicit {
     /// Finds the end of the step, and takes it unless its error is too large. Gives the share of the residual that is
     /// left, if it was taken.
     fn find(&mut self, world: &mut World, passes: &mut [ScheduledPass], clock: &Clock) -> Result<Option<f64>, Lost> {
-        let Self { axes, iterations, springs, works, control } = self;
+        let Self { axes, iterations, springs, works, control, .. } = self;
         let (h, formula) = (clock.time_step, iterations.settings.formula);
         let mut trial = Trial { world, passes, axes, springs, step: clock.step, count: 0, elsewhere: false };
         let Iterations { motion, space, kept, .. } = &mut *iterations;

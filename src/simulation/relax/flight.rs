@@ -8,9 +8,9 @@ use crate::scene::schema::{Scene, Tool};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
-/// How far what comes to rest may go, in lengths of all bodies together, their tools' ways and those of held nodes. What
-/// something holds stays within some of them: rubber tears at ten times its length, and pseudo-steps, which begin at
-/// rest, go beyond where they end by less than the way there; that is twenty. Five times as many are gone in some
+/// How far what comes to rest may go, in lengths of all bodies together, their tools' ways and those of held nodes.
+/// What something holds stays within some of them: rubber tears at ten times its length, and pseudo-steps, which begin
+/// at rest, go beyond where they end by less than the way there; that is twenty. Five times as many are gone in some
 /// hundred pseudo-steps by what nothing holds, and lead no rest astray.
 const FAR: f64 = 100.0;
 

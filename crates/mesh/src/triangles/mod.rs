@@ -88,6 +88,17 @@ pub enum SurfaceError {
         /// How many pairs of grid points.
         count: usize,
     },
+    /// A part of it lies in another and is turned outwards as that is.
+    #[error(
+        "the surface encloses {enclosed:.3e} m³, and {inside:.3e} m³ are inside: a part of it lies close beneath \
+         another, and is turned outwards, too; let it be the boundary of one solid, hollows turned inwards"
+    )]
+    Twice {
+        /// The volume that its triangles enclose, what is enclosed twice counted so (m³).
+        enclosed: f64,
+        /// What of the grid is inside (m³).
+        inside: f64,
+    },
     /// The grid would be too large, or there is no spacing.
     #[error("a grid of spacing {spacing} m would have {nodes:e} points; allowed are {most}, here from {least} m on")]
     Spacing {

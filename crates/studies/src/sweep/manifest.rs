@@ -79,8 +79,8 @@ struct Line {
     done: Done,
 }
 
-/// Makes the keys of a sweep's rows: what makes two the same. That is the version, the text of the scene, what is put in
-/// as `--set` has it, names of what is kept and when (s), how it runs, and what files hold that a variant names.
+/// Makes the keys of a sweep's rows: what makes two the same. That is the version, the text of the scene, what is put
+/// in as `--set` has it, names of what is kept and when (s), how it runs, and what files hold that a variant names.
 pub struct Keys {
     /// What all rows have in common, as a text.
     common: String,

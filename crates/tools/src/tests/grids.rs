@@ -232,6 +232,18 @@ fn what_crosses_itself_is_refused_with_a_place() {
     }
 }
 
+/// Nearer to each other than cells of the grid, so that none of these sees an inside and an outside too many.
+#[test]
+fn a_shell_close_beneath_another_that_is_turned_outwards_too_is_refused() {
+    let ball = |radius: f64| of_shape(Shape::Sphere { radius }, 0.0, 48);
+    let error = DistanceGrid::new(&together(ball(1.0), ball(0.97)), 0.1).map(drop).unwrap_err();
+    let is_twice = |enclosed: f64, inside: f64| enclosed > 1.7 * inside && (3.5..5.0).contains(&inside);
+    assert!(matches!(error, SurfaceError::Twice { enclosed, inside } if is_twice(enclosed, inside)), "{error}");
+    let mut hollow = ball(0.7);
+    hollow.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+    assert!(DistanceGrid::new(&together(ball(1.0), hollow), 0.1).is_ok());
+}
+
 #[test]
 fn a_grid_that_is_too_large_is_refused_with_the_spacing_that_is_not() {
     for spacing in [1e-3, 1e-300, 0.0, -1.0, f64::NAN, f64::INFINITY] {

@@ -1,0 +1,41 @@
+//! How often it is looked at what tools take and suck.
+
+use super::Assembly;
+use super::contacts::motion;
+use crate::components::*;
+use crate::systems::criterion_steps;
+use bevy_ecs::prelude::*;
+
+/// From one look to the next a mouth goes no farther than this part of how far it reaches, as far as the scene tells.
+const FARTHEST: f64 = 0.5;
+
+/// Chooses it by the fastest mouth: as often as criteria are looked at, oftener where a mouth would leave gaps, in
+/// every step at most. In a static analysis all goes by and by.
+pub(super) fn insert(assembly: &Assembly<'_>, world: &mut World) {
+    let (scene, clock) = (&assembly.scene.scene, *world.resource::<Clock>());
+    let of_removal = |removal: &ToolRemoval| (removal.tool.clone(), reach_of(removal));
+    let of_suction = |suction: &Suction| (suction.tool.clone(), suction.reach.min(suction.bore));
+    let mut mouths: Vec<(String, f64)> = world.query::<&Suction>().iter(world).map(of_suction).collect();
+    let mut removals = world.query::<&ToolRemovals>();
+    mouths.extend(removals.iter(world).flat_map(|removals| &removals.all).map(of_removal));
+    let steps = |(tool, reach): &(String, f64)| {
+        // of its origin, about which mouths are
+        let speed = motion(scene.tools.get(tool)?).fastest(0.0);
+        Some(FARTHEST * reach / (speed * clock.time_step))
+    };
+    let most = criterion_steps(&clock) as f64;
+    let fewest = match clock.relaxation {
+        None => mouths.iter().filter_map(steps).fold(most, f64::min),
+        Some(_) => most,
+    };
+    world.insert_resource(ToolLooks(fewest.max(1.0) as u64));
+}
+
+/// How far from its middle a tool takes elements at least (m).
+fn reach_of(removal: &ToolRemoval) -> f64 {
+    let inside = match &removal.mouth {
+        Mouth::Disc(_) => 0.0,
+        Mouth::Tool(solid) => solid.bounding_sphere().map_or(0.0, |(middle, _)| -solid.distance(middle).0),
+    };
+    removal.reach + inside.max(0.0)
+}
