@@ -2,7 +2,7 @@
 
 mod glance;
 
-use super::candidates::{Candidates, Kept, Listed, NEARER, ON_IT};
+use super::candidates::{Candidates, Kept, Listed};
 use super::shortlist::{Lately, MOST, Shortlist, Stays};
 use super::surfaces::{OF_ANGLES, Placed, Point, Surfaces};
 use crate::mesh::OnTriangle;

@@ -137,11 +137,11 @@ fn pivot(validator: &mut Validator, path: &Path, tool: &Tool, point: DVec3) {
         let turns = turns_across(tool, axis);
         let angle = axis.angle_between(point - place.at).to_degrees() + turns;
         if angle > MOST_TURNED {
-            let up_to = if turns > 0.0 { "up to " } else { "" };
-            let message = format!("the tool would be turned by {up_to}{angle:.0} degrees for its axis to go through this");
+            let most = if turns > 0.0 { "up to " } else { "" };
+            let what = format!("the tool would be turned by {most}{angle:.0} degrees for its axis to go through this");
             validator
                 .out
-                .error_at(path, message)
+                .error_at(path, what)
                 .note(format!("{MOST_TURNED} degrees are allowed: there are two ways to turn it half round"))
                 .note("let `rotation` point its axis z, from the tip along the shaft, about that way");
             return;

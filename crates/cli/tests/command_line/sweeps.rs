@@ -170,7 +170,7 @@ fn a_law_in_another_file_text_makes_other_rows() {
     place.done(&["sweep", "sweep.ron"]);
     let rows = place.read("out/sweep/rows.csv");
     assert!(place.done(&["sweep", "sweep.ron"]).contains("2 of them there already"));
-    let stiffer = law.replace("let factor = 2.0 *", "let factor = 3.0 *");
+    let stiffer = law.replace("elastic.mu", "(1.5 * elastic.mu)");
     assert_ne!(stiffer, law);
     write(&stiffer);
     assert!(!place.done(&["sweep", "sweep.ron"]).contains("already"));
