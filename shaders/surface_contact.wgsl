@@ -176,8 +176,10 @@ fn are_behind(facing: Facing, point: vec3<f32>, normal: vec3<f32>) -> bool {
     return true;
 }
 
-// What a point faces that is before a side or a corner, by where its step against that ends: the plane through it that
-// it ends the farthest outside of; twin of systems/surface_contact/ends.rs and src/contact/rims.rs.
+// What a point faces that is before a side or a corner, by where its step against that ends: a plane beside it to which
+// it lacks nothing or much less; twin of systems/surface_contact/ends.rs and src/contact/rims.rs.
+const MUCH_LESS: f32 = 0.5;
+
 fn at_end(point_number: u32, point: vec3<f32>, facing: Facing) -> Facing {
     let meets = meeting_with(facing.triangle);
     // a spring does not ask where a step ends
@@ -185,11 +187,13 @@ fn at_end(point_number: u32, point: vec3<f32>, facing: Facing) -> Facing {
         return facing;
     }
     let goes_by = goes(parts_of(point_number, facing, point), NEXT);
-    var farthest = dot(facing.normal, goes_by - facing.at);
-    if farthest >= meeting_number(meets, 3u) + SHARES * meeting_number(meets, EDGE) {
+    let within = meeting_number(meets, 3u) + SHARES * meeting_number(meets, EDGE);
+    let lacks = within - dot(facing.normal, goes_by - facing.at);
+    if !(lacks > 0.0) {
         return facing;
     }
     var found = facing;
+    var least = FAR;
     let count = count_around(facing);
     for (var number = 0u; number < count; number++) {
         let triangle = around_part(facing, number);
@@ -199,12 +203,13 @@ fn at_end(point_number: u32, point: vec3<f32>, facing: Facing) -> Facing {
         let corners = corners_of(triangle, point);
         let normal = normal_of(corners);
         let gap = -dot(corners[0], normal);
-        let ends = gap + dot(normal, goes_by);
-        if all(normal == vec3<f32>(0.0)) || !(gap >= 0.0 && ends > farthest + surface.rounding)
+        let lacks_to_it = within - (gap + dot(normal, goes_by));
+        let is_less = lacks_to_it <= max(0.0, MUCH_LESS * dot(facing.normal, normal) * lacks);
+        if all(normal == vec3<f32>(0.0)) || !(gap >= 0.0 && is_less && lacks_to_it < least - surface.rounding)
             || !are_behind(facing, point, normal) {
             continue;
         }
-        farthest = ends;
+        least = lacks_to_it;
         found.triangle = triangle;
         found.normal = normal;
         found.gap = gap;

@@ -15,6 +15,10 @@ const RIM: f64 = 0.5;
 const FLUSH: f64 = -0.99;
 const LOOKS: f64 = -0.5;
 
+/// What ends before a rim lacks much less to a plane there than to the rim where it is so much of what it would lack to
+/// the plane if it went straight for the rim.
+const MUCH_LESS: f64 = 0.5;
+
 impl Surfaces {
     /// What a point faces that sees a face near its rim: the flank there that it faces more, as a plane that ends at
     /// the rim, where other flanks begin to see it; nothing where the point is farther beyond that than it is outside.
@@ -109,41 +113,48 @@ impl Surfaces {
         (!is_other || outside > -ON_IT * edge).then_some(Facing { triangle, weights, at: below, normal, gap, part: 0 })
     }
 
-    /// What a point faces that is before a side or a corner, by where its `step` against that (m) ends. The plane
-    /// across the way from there is no wall: what glides past a rim would end behind it, and be braked and thrown aside
-    /// where nothing is. What is at the side or corner is behind the planes of all triangles around it, so that the
-    /// point ends outside of it by as much at least as outside of any of them: it faces the one that it ends the
-    /// farthest outside of, or the way where that is more. So what ends inside is behind all of them, whichever it is.
+    /// What a point faces that is before a side or a corner, by where its `step` against that (m) ends, where it would
+    /// come nearer to the plane across the way from there than it may, `within` (m). That plane is no wall: what glides
+    /// past a rim would end behind it, and be braked and thrown aside where nothing is. What is at the side or corner
+    /// is behind the planes of all triangles around it, so that a point that ends outside of any of them is as far off
+    /// at least, and faces that one; so it does where it lacks much less to that, as what glides over a face that it
+    /// has sunk into. What meets the rim itself lacks n · n′ as much to a plane of normal n′ as along its way n, and
+    /// goes on facing that: where the way and planes are alike, rounding does not choose.
     ///
     /// Not asked are planes that the point is behind as it is, for it would be thrown out, those of triangles that it
     /// may not meet, and those before which some of what is around the place rises by more than a twentieth.
     pub fn faced_at_end(
         &self,
         places: &[DVec3],
-        (point, step): (&Point, DVec3),
+        (point, step, within): (&Point, DVec3, f64),
         facing: Facing,
         may_meet: impl Fn(u32) -> bool,
     ) -> Facing {
         let at = point.place(places);
+        let lacks = within - facing.normal.dot(at + step - facing.at);
+        if lacks <= 0.0 {
+            return facing;
+        }
         let mut around: SmallVec<[u32; 8]> = self.around_part(facing.triangle, facing.part as usize).collect();
         around.push(facing.triangle);
         // of planes that are alike the first, whichever triangle has been found
         around.sort_unstable();
-        let (mut found, mut farthest) = (facing, facing.normal.dot(at + step - facing.at));
-        let more = (1.0 - NEARER) * at.distance(facing.at);
+        let (mut found, mut least) = (facing, f64::INFINITY);
         for &triangle in &around {
             let (normal, corners) = (self.normal(places, triangle), self.corners(places, triangle));
             let gap = (at - corners[0]).dot(normal);
-            let ends = gap + step.dot(normal);
+            let lacks_to_it = within - (gap + step.dot(normal));
+            let is_less = lacks_to_it <= f64::max(0.0, MUCH_LESS * facing.normal.dot(normal) * lacks);
             let is_behind = |corner: DVec3| {
                 let off = corner - facing.at;
                 off.dot(normal) <= ALIKE * off.length()
             };
             let all_behind = || around.iter().flat_map(|&other| self.corners(places, other)).all(is_behind);
-            if normal != DVec3::ZERO && gap >= 0.0 && ends > farthest + more && may_meet(triangle) && all_behind() {
+            let is_least = is_less && lacks_to_it < least - (1.0 - NEARER) * lacks;
+            if normal != DVec3::ZERO && gap >= 0.0 && is_least && may_meet(triangle) && all_behind() {
                 let below = at - gap * normal;
                 let weights = weights_in_plane(below, corners);
-                (found, farthest) = (Facing { triangle, weights, at: below, normal, gap, part: 0 }, ends);
+                (found, least) = (Facing { triangle, weights, at: below, normal, gap, part: 0 }, lacks_to_it);
             }
         }
         found

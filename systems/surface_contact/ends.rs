@@ -7,8 +7,8 @@ use glam::DVec3;
 
 impl SurfaceContacts {
     /// What a point faces of what it sees, with its step against that (m). Where it is before a side or a corner and
-    /// would end nearer than it may to the plane across the way from there, that is another one that it ends farther
-    /// outside of, if there is any. Springs of explicit steps do not ask where these end: only where `springs` says so.
+    /// would end nearer than it may to the plane across the way from there, that may be a face beside it. Springs of
+    /// explicit steps do not ask where these end: only where `springs` says so.
     pub(super) fn faced_at_end(
         &self,
         number: u32,
@@ -23,14 +23,14 @@ impl SurfaceContacts {
         let Some(meeting) = meeting.filter(|meeting| springs || meeting.spring.is_none()) else { return *facing };
         let step = step(point, facing);
         let shares = if point.triangle.is_some() { SHARES * meeting.edge } else { 0.0 };
-        let ends = facing.normal.dot(point.place(&surface.places) + step - facing.at);
-        if ends >= meeting.thickness + shares {
+        let within = meeting.thickness + shares;
+        if facing.normal.dot(point.place(&surface.places) + step - facing.at) >= within {
             return *facing;
         }
         let corners = |triangle: u32| surface.triangles.triangles[triangle as usize];
         let is_own = |triangle: u32| point.parts().any(|(node, _)| corners(triangle).contains(&node));
         let may_meet = |triangle: u32| !is_own(triangle) && surface.apart.binary_search(&(number, triangle)).is_err();
-        let mut found = surface.triangles.faced_at_end(&surface.places, (point, step), *facing, may_meet);
+        let mut found = surface.triangles.faced_at_end(&surface.places, (point, step, within), *facing, may_meet);
         if point.triangle.is_some() {
             found.gap = surface.gap_of_facet(point, &found);
         }

@@ -116,7 +116,7 @@ fn at_end(
     let way = (at - nearest) / gap;
     let facing = Facing { triangle, weights, at: nearest, normal: way, gap, part: part as u32 };
     let point = Point { triangle: Some(12), ..Point::node(1, 8) };
-    let found = surfaces.faced_at_end(places, (&point, DVec3::from(step)), facing, may_meet);
+    let found = surfaces.faced_at_end(places, (&point, DVec3::from(step), 0.0), facing, may_meet);
     if found.part == 0 {
         // what bears it is below it, so that forces have no moment
         let corners = surfaces.corners(places, found.triangle);
@@ -154,11 +154,21 @@ fn what_is_before_a_rim_or_a_corner_faces_what_it_ends_the_farthest_outside_of()
     }
 }
 
+/// What meets the rim itself is kept off it, whichever of its flanks it ends a little less inside of.
+#[test]
+fn what_goes_straight_for_a_rim_faces_that() {
+    let cube = before_cube(DVec3::new(1.06, 0.3, -0.06), DVec3::Z, 0.0);
+    for (right, up) in [(-0.08, 0.08), (-0.08, 0.09), (-0.09, 0.08), (-0.3, 0.3)] {
+        let (found, way) = at_end(&cube, [right, 0.0, up], |_| true);
+        assert_eq!(found.normal, way, "{right}, {up}");
+    }
+}
+
 /// Below a wall that leans back far the point is behind its plane, and would be thrown out of that.
 #[test]
 fn a_plane_that_the_point_is_behind_is_not_faced() {
     let cube = before_cube(DVec3::new(1.02, 0.3, -0.08), DVec3::Z, -1.0);
-    let (found, _) = at_end(&cube, [-0.2, 0.0, 0.2], |_| true);
+    let (found, _) = at_end(&cube, [-0.2, 0.0, 0.1], |_| true);
     assert!((found.normal + DVec3::Z).length() < 1e-12 && (found.gap - 0.08).abs() < 1e-12, "{found:?}");
 }
 
