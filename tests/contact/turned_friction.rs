@@ -154,8 +154,9 @@ fn what_falls_on_the_middle_of_a_layer_stays_there() {
 }
 
 /// A block on a layer whose foot tilts by 20°, with cells that are side on side along one axis and askew along the
-/// other: it ends at one place, in all digits that f32 has. Where rounding chose the triangle that it went along with,
-/// the CPU's two ends were .05 to .07 μm apart, and a GPU's 7.
+/// other: it ends at one place. Where rounding chose the triangle that it went along with, the CPU's two ends were .05
+/// to .07 μm apart, and a GPU's 7. Places of 5 mm are known to 3e-10 m in f32, in which GPUs find contacts, and in 2000
+/// steps that may add up to 600 nm where it is all one way, to 13 where it is by chance.
 #[test]
 fn what_tilts_with_aligned_cells_ends_at_one_place_everywhere() {
     let scene = "(duration: 0.2, integration: (step: 1e-4), bodies: {
@@ -175,6 +176,6 @@ fn what_tilts_with_aligned_cells_ends_at_one_place_everywhere() {
     });
     let ends: Vec<_> = ends.collect();
     for (name, end) in &ends[1..] {
-        near(&format!("{name}: {end} m"), end.distance(ends[0].1), 0.0, 1.0, 2e-8);
+        near(&format!("{name}: {end} m"), end.distance(ends[0].1), 0.0, 1.0, if name.contains("GPU") { 1e-7 } else { 1e-9 });
     }
 }
