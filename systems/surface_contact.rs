@@ -14,6 +14,7 @@ mod memory;
 mod motion;
 mod solved;
 mod survey;
+mod turns;
 mod words;
 
 use super::node_slices::SlicedColumns;
@@ -154,6 +155,8 @@ struct Surface {
     places: Vec<DVec3>,
     /// Which way the triangles look that are.
     normals: Vec<DVec3>,
+    /// How they have turned in the last step; empty where few are asked for it.
+    turns: Vec<Option<turns::Turn>>,
     /// How far nodes have moved since the lists were made; and how far faces must be looked at in this step (m), where
     /// that was found before forces.
     motion: look::Motion,

@@ -204,7 +204,11 @@ fn a_hand_is_not_left_standing_at_the_end_of_a_scene() {
     assert!(state.running && state.time > before && state.held[0].force.length() > 1e-3, "who takes hold then pulls");
     session.command(Command::Pause);
     from_above(&mut session, 2);
-    assert!(!session.state().running, "who pauses it has it paused");
+    let held = session.state().held.len();
+    assert!(!session.state().running && held > 0, "who pauses it has it paused");
+    session.command(Command::Grab { hand: 1, origin: DVec3::ZERO, direction: DVec3::ZERO });
+    let state = session.state();
+    assert!(state.refusal.is_some() && state.held.len() == held, "a ray that leads nowhere lets go of nothing");
 }
 
 #[test]

@@ -16,16 +16,15 @@ impl Hands {
         !self.0.is_empty()
     }
 
-    /// Takes hold of what a ray meets.
+    /// Takes hold of what a ray meets; lets go where it meets nothing.
     pub fn grab(&mut self, hand: u32, ray: (DVec3, DVec3), simulation: &mut Simulation) -> Result<(), Error> {
-        self.release(hand, simulation)?;
         match simulation.pick(ray.0, ray.1)? {
             Some(pick) => self.take(hand, pick, simulation),
-            None => Ok(()),
+            None => self.release(hand, simulation),
         }
     }
 
-    /// Takes hold of a point that was picked.
+    /// Takes hold of a point that was picked, and lets go of what the hand held.
     pub fn take(&mut self, hand: u32, pick: Pick, simulation: &mut Simulation) -> Result<(), Error> {
         self.release(hand, simulation)?;
         let id = simulation.grab(&pick, &Grip::default())?;

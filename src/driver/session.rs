@@ -193,18 +193,13 @@ impl Session {
                 self.look.measure_anew();
             }
             Command::Input { name, value } => run.simulation.set_input(&name, value)?,
-            Command::Grab { .. } | Command::GrabAt { .. } => {
-                match command {
-                    Command::Grab { hand, origin, direction } => {
-                        run.hands.grab(hand, (origin, direction), &mut run.simulation)?;
-                    }
-                    Command::GrabAt { hand, pick } => run.hands.take(hand, *pick, &mut run.simulation)?,
-                    _ => {}
-                }
-                if run.is_over() && run.goes_on_in_hands() {
-                    self.running = true;
-                    self.pace.stand(run.simulation.time());
-                }
+            Command::Grab { hand, origin, direction } => {
+                run.hands.grab(hand, (origin, direction), &mut run.simulation)?;
+                self.go_on_in_hands();
+            }
+            Command::GrabAt { hand, pick } => {
+                run.hands.take(hand, *pick, &mut run.simulation)?;
+                self.go_on_in_hands();
             }
             Command::MoveGrab { hand, target } => run.hands.move_to(hand, target, &mut run.simulation)?,
             Command::Release { hand } => run.hands.release(hand, &mut run.simulation)?,
@@ -216,6 +211,15 @@ impl Session {
             Command::Load(_) | Command::Speed(_) | Command::Field(_) | Command::Arrows(_) | Command::Lend(_) => {}
         }
         Ok(())
+    }
+
+    /// Goes on beyond the scene's end where a hand has taken hold of something there.
+    fn go_on_in_hands(&mut self) {
+        let Some(run) = &mut self.run else { return };
+        if run.is_over() && run.goes_on_in_hands() {
+            self.running = true;
+            self.pace.stand(run.simulation.time());
+        }
     }
 
     /// Over to a state that was kept elsewhere, where hands can hold something if they could there.

@@ -3,7 +3,7 @@
 use super::body_slices::{BodySlices, set_vector, vector_at};
 use super::faced::face;
 use super::meet::{FACES, FREE, SLIDES, STICKS};
-use super::{Meeting, Surface, SurfaceContacts, crossings};
+use super::{Meeting, Surface, SurfaceContacts, crossings, turns};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
 use crate::contact::{Beginning, Contact, ContactSet, Faced, Facing, Parts, Point};
@@ -219,6 +219,7 @@ pub(super) fn gather<T: Scalar>(
     let work_factor = IntegrationCoefficients::<f64>::of(clock).work_factor;
     let nodes = Nodes { slots, steps, earlier, work_factor };
     let of_bodies = &*bodies;
+    turns::update(contacts, of_bodies, cpu);
     face(contacts, reach, cpu, batches.iter_mut().zip(&mut *seen), |contacts, point, faced, (batch, seen)| {
         let at_end = faced.is_beside().then(|| nodes.faced_at_end(contacts, point, faced));
         let faced = at_end.as_ref().unwrap_or(faced);

@@ -3,18 +3,22 @@
 use super::body_slices::{BodySlices, Kept, set_vector, vector};
 use super::faced::tasks;
 use super::gather::{Gathered, InStep, gather};
-use super::{Meeting, Surface, SurfaceContacts, motion};
+use super::{Meeting, Surface, SurfaceContacts};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
 use crate::contact::{ContactSet, Facing, Point, bilinear};
 use crate::math::Scalar;
 use glam::{DVec3, DVec4};
+use smallvec::SmallVec;
 
 /// What a point did in the last step, in [`SurfaceTouch`].
 pub(super) const FREE: f64 = 0.0;
 pub(super) const FACES: f64 = 1.0;
 pub(super) const STICKS: f64 = 2.0;
 pub(super) const SLIDES: f64 = 3.0;
+
+/// Nodes with signed weights.
+pub(super) type SignedNodes = SmallVec<[(u32, f64); 8]>;
 
 impl SurfaceContacts {
     /// How far a point is outside what it must stay outside of (m).
@@ -28,54 +32,6 @@ impl SurfaceContacts {
         let body = self.surface.triangles.bodies[facing.triangle as usize];
         let settling = self.meeting(point.body, body).map_or(0.0, |meeting| meeting.settling(clock));
         InStep { largest: self.surface.motion.largest, settling }
-    }
-
-    /// How far the end of a normal as long as the thickness has gone in the last step as the surface turned where a
-    /// point faces it (m): a point that stays above the same place goes as far along it. Around each node that bears
-    /// the point all triangles count: above nodes and sides several are as near, single ones of them rock as tissue
-    /// rings, and what goes along with one of these is pushed aside.
-    pub(super) fn turned<T: Scalar>(
-        &self,
-        meeting: &Meeting,
-        (point, facing): (&Point, &Facing),
-        bodies: &[BodySlices<'_, T>],
-    ) -> DVec3 {
-        // what nothing holds does not go along
-        if meeting.thickness <= 0.0 || meeting.friction == [0.0; 2] {
-            return DVec3::ZERO;
-        }
-        let (corners, weights) = self.surface.corners_of(point, facing);
-        let mut turn = DVec3::ZERO;
-        for (node, weight) in corners.into_iter().zip(weights).filter(|(_, weight)| *weight != 0.0) {
-            turn += weight * self.turn_around(node, facing.normal, bodies);
-        }
-        meeting.thickness * turn.cross(facing.normal)
-    }
-
-    /// How the surface around a node has turned in the last step (rad), but for turns about its own normal. Triangles
-    /// count by their areas, and the more the more they look along `normal`: walls beyond a rim, that turn otherwise,
-    /// do not, and none begins to count all at once.
-    fn turn_around<T: Scalar>(&self, node: u32, normal: DVec3, bodies: &[BodySlices<'_, T>]) -> DVec3 {
-        let Surface { triangles, nodes, .. } = &self.surface;
-        let [mut across, mut change] = [DVec3::ZERO; 2];
-        for &triangle in triangles.around(node) {
-            let corners = triangles.triangles[triangle as usize];
-            // of the fourth corner of a quadrilateral some may be beyond what is near, whose places are not followed
-            let [a, b, c] = corners.map(|corner| motion::place(self, bodies, corner as usize));
-            let [by_a, by_b, by_c] = corners.map(|corner| {
-                let (body, row) = nodes[corner as usize];
-                vector(bodies[body as usize].step, row as usize)
-            });
-            // sides in the middle of the step, and how they changed in it
-            let [by_b, by_c] = [by_b - by_a, by_c - by_a];
-            let [b, c] = [b - a - 0.5 * by_b, c - a - 0.5 * by_c];
-            let of_triangle = b.cross(c);
-            let share = normal.dot(of_triangle.normalize_or_zero()).max(0.0);
-            across += share * of_triangle;
-            change += share * (by_b.cross(c) + b.cross(by_c));
-        }
-        let size = across.length();
-        if size > 0.0 { (across / size).cross(change / size) } else { DVec3::ZERO }
     }
 
     /// Where a point's numbers are.
@@ -109,6 +65,13 @@ impl Surface {
         }
         let ([a, b, c], [u, v, w]) = (self.triangles.triangles[facing.triangle as usize], facing.weights);
         ([a, b, c, c], [u, v, w, 0.0])
+    }
+
+    /// A point's nodes against those of what it faces, and how many of them, the first, are the point's.
+    pub(super) fn between(&self, point: &Point, facing: &Facing) -> (SignedNodes, usize) {
+        let (corners, weights) = self.corners_of(point, facing);
+        let of_face = corners.into_iter().zip(weights).map(|(node, weight)| (node, -weight));
+        (point.parts().chain(of_face).collect(), point.parts().count())
     }
 }
 
@@ -249,3 +212,6 @@ pub(super) fn push<T: Scalar>(contacts: &mut SurfaceContacts, forces: &[DVec4], 
         pressed.push(node);
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -37,7 +37,8 @@ impl Surface {
         let of_triangles = self.triangles.bytes() + bytes(facets) + bytes(normals) + bytes(numbers);
         let near = bytes(&self.near.nodes) + bytes(&self.near.triangles);
         let of_pairs = self.faced_by_task.iter().map(|faced| bytes(faced)).sum::<usize>() + bytes(&self.pairs);
-        let of_step = bytes(&self.awake) + self.gathered.bytes() + bytes(&self.solved) + of_pairs;
+        let of_looking = bytes(&self.awake) + bytes(&self.turns);
+        let of_step = of_looking + self.gathered.bytes() + bytes(&self.solved) + of_pairs;
         let of_points_near = bytes(&self.wake) + bytes(&self.shortlists) + self.neighbourhoods.bytes();
         let remembered = bytes(&self.pressed) + bytes(&self.touching);
         SurfaceMemory {

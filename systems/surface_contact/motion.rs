@@ -14,7 +14,7 @@ use glam::DVec3;
 use smallvec::{SmallVec, smallvec};
 use web_time::Instant;
 
-/// Nodes whose places a task finds, and triangles whose normals.
+/// Nodes whose places a task finds, and triangles whose normals or turns.
 const NUMBERS_A_TASK: usize = 1024;
 
 /// How far nodes may move before shortlists are begun anew, in edges: at least and at most; and for how many steps of
@@ -147,7 +147,10 @@ pub(super) fn place<T: Scalar>(contacts: &SurfaceContacts, bodies: &[BodySlices<
 }
 
 /// Some ascending numbers a task, with the values of these and of those between, and the number of the first value.
-fn tasks<'a, T>(numbers: &'a [u32], mut left: &'a mut [T]) -> impl Iterator<Item = (&'a [u32], usize, &'a mut [T])> {
+pub(super) fn tasks<'a, T>(
+    numbers: &'a [u32],
+    mut left: &'a mut [T],
+) -> impl Iterator<Item = (&'a [u32], usize, &'a mut [T])> {
     let mut first = 0;
     numbers.chunks(NUMBERS_A_TASK).map(move |numbers| {
         let end = numbers.last().map_or(first, |&last| last as usize + 1);
@@ -185,6 +188,8 @@ pub(super) fn list<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlic
     surface.wake.resize(surface.lists.points.len(), 0.0);
     (0..).zip(&near.nodes).for_each(|(slot, &node)| surface.gathered.slots[node as usize] = slot);
     surface.near = near;
+    // some are near no more, and would stay as they are
+    surface.turns.clear();
     surface.motion.mark_lists(bodies);
     // they are begun when somebody looks
     surface.shortlists.clear();

@@ -2,8 +2,8 @@
 
 use super::body_slices::{BodySlices, Kept, set_vector, vector_at};
 use super::gather::{Gathered, SHARES, allowed};
-use super::meet::{FACES, SLIDES, STICKS, forget, push, release};
-use super::{Meeting, SurfaceContacts, crossings, faced};
+use super::meet::{FACES, SLIDES, STICKS, SignedNodes, forget, push, release};
+use super::{Meeting, SurfaceContacts, crossings, faced, turns};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
 use crate::contact::{Contact, Facing, Parts, Point};
@@ -12,7 +12,6 @@ use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::RunSystemOnce;
 use glam::{DMat3, DVec3};
-use smallvec::SmallVec;
 
 /// A point and what it faces in a step. Weights and normal are those at its beginning, as in explicit steps: what a
 /// point faces would change all at once where it comes round a corner, and of some steps there were no end.
@@ -24,7 +23,7 @@ pub(super) struct Pair {
     first: bool,
     normal: DVec3,
     /// Nodes with signed weights.
-    nodes: SmallVec<[(u32, f64); 8]>,
+    nodes: SignedNodes,
     /// How many of these, the first, are the point's: of the face's, too, some weights may be positive.
     points: usize,
     /// How deep it may be inside (m, 0 or negative): as deep as it is found where it was not before.
@@ -98,6 +97,9 @@ pub(super) fn pair<T: Scalar>(
     found.iter_mut().for_each(Vec::clear);
     faced::face(contacts, reach, cpu, found.iter_mut(), |_, point, faced, found| found.push((point, *faced)));
     crossings::find(contacts, reach);
+    if clock.relaxation.is_none() {
+        turns::update(contacts, bodies, cpu);
+    }
     let mut pairs = std::mem::take(&mut contacts.surface.pairs);
     let surface = &contacts.surface;
     let mut add = |pair: Pair, gap: f64| {
@@ -106,13 +108,14 @@ pub(super) fn pair<T: Scalar>(
     };
     // on the way to rest there is no motion
     let goes_on = |point: &Point, facing: &Facing| -> DVec3 {
-        let (corners, weights) = surface.corners_of(point, facing);
-        let of_face = corners.into_iter().zip(weights).map(|(node, weight)| (node, -weight));
         let step = |(node, weight): (u32, f64)| {
             let (body, row) = surface.nodes[node as usize];
             weight * vector_at(bodies[body as usize].step, 3 * row as usize)
         };
-        if clock.relaxation.is_some() { DVec3::ZERO } else { point.parts().chain(of_face).map(step).sum() }
+        if clock.relaxation.is_some() {
+            return DVec3::ZERO;
+        }
+        surface.between(point, facing).0.into_iter().map(step).sum()
     };
     for &(number, faced) in found.iter().flatten() {
         let point = &surface.points[number as usize];
@@ -122,9 +125,7 @@ pub(super) fn pair<T: Scalar>(
             let body = surface.triangles.bodies[facing.triangle as usize];
             let Some(meeting) = contacts.meeting(point.body, body) else { continue };
             let in_step = contacts.in_step(point, facing, clock);
-            let (corners, weights) = surface.corners_of(point, facing);
-            let of_face = corners.into_iter().zip(weights).map(|(node, weight)| (node, -weight));
-            let (nodes, points) = (point.parts().chain(of_face).collect(), point.parts().count());
+            let (nodes, points) = surface.between(point, facing);
             let (gap, kept) = (contacts.gap(point, facing), contacts.kept(number));
             let allowed = match (first, &clock.springs) {
                 (true, _) => allowed(bodies[kept.body].kept(kept), gap, 0.0, &in_step),
@@ -386,6 +387,3 @@ pub(crate) fn count_work(
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,10 +1,11 @@
 //! What friction holds goes along with what turns: between plates that turn, and above a face that tilts.
 
-use crate::bits::start;
+use crate::bits::{bits, start};
 use crate::configurations::{cpu_and_long_gpu, near};
 use glam::{DMat3, DQuat, DVec3};
 use sinew::Simulation;
 use sinew::components::Precision;
+use sinew::systems::SurfaceContacts;
 
 /// Edges of the cube between the plates (m).
 const EDGE: f64 = 0.01 / 3.0;
@@ -178,5 +179,41 @@ fn what_tilts_with_aligned_cells_ends_at_one_place_everywhere() {
     for (name, end) in &ends[1..] {
         let allowed = if name.contains("GPU") { 1e-7 } else { 1e-9 };
         near(&format!("{name}: {end} m"), end.distance(ends[0].1), 0.0, 1.0, allowed);
+    }
+}
+
+/// A block that slides askew above a soft layer by a thickness, over one and a half of its cells. How triangles have
+/// turned is found beforehand only of what lists hold, and where these hold little for what touches.
+#[test]
+fn bits_of_what_goes_along_do_not_depend_on_threads_or_lists() {
+    let explicit = ("integration: (step: 1e-4)", "");
+    let implicit = ("solver: Implicit(step: 0.001)", ", law: Penalty(share: 1)");
+    for (points, (solver, law)) in [("Nodes", explicit), ("Faces", explicit), ("Nodes", implicit)] {
+        let text = format!(
+            "(duration: 0.03, {solver}, bodies: {{
+                \"low\": (mesh: Box(size: (0.03, 0.03, 0.005), cells: (6, 6, 2), elements: Hex8), material: \"m\",
+                    translate: (-0.015, -0.015, -0.005)),
+                \"up\": (mesh: Box(size: (0.01, 0.01, 0.006), cells: (3, 3, 2), elements: Hex8), material: \"m\",
+                    rotate: (0, 0, 20), translate: (-0.008, -0.008, 0.00202), velocity: (0.3, 0.1, -0.02))}},
+            materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 2e4, poisson: 0.3), damping: 20)}},
+            constraints: [Fixed(body: \"low\", on: Set(\"z0\"))], loads: [Gravity(acceleration: (0, 0, -9.81))],
+            contacts: [Between(bodies: (\"low\", \"up\"), friction: 0.3, thickness: 0.002, points: {points}{law})])"
+        );
+        for precision in [Precision::F32, Precision::F64] {
+            let what = format!("{solver}, {points}, {precision:?}");
+            let found = |threads: usize, skin: Option<f64>| {
+                let mut simulation = start(&text, precision, threads);
+                if let Some(skin) = skin {
+                    simulation.world_mut().resource_mut::<SurfaceContacts>().skin = skin;
+                }
+                simulation.advance_to(0.03).unwrap();
+                assert!(simulation.contact("up").unwrap().points > 0, "{what}: nothing touches");
+                bits(&mut simulation, &["low", "up"])
+            };
+            let wanted = found(1, None);
+            for (threads, skin) in [(3, None), (1, Some(1e-9)), (2, Some(3.0))] {
+                assert!(found(threads, skin) == wanted, "{what}: {threads} threads, skin {skin:?}");
+            }
+        }
     }
 }
