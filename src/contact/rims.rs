@@ -15,9 +15,9 @@ const RIM: f64 = 0.5;
 const FLUSH: f64 = -0.99;
 const LOOKS: f64 = -0.5;
 
-/// What ends before a rim lacks much less to a plane there than to the rim where it is so much of what it would lack to
+/// What ends before a rim lacks less to a plane there than to the rim where it is so much of what it would lack to
 /// the plane if it went straight for the rim.
-const MUCH_LESS: f64 = 0.5;
+const LESS: f64 = 0.8;
 
 impl Surfaces {
     /// What a point faces that sees a face near its rim: the flank there that it faces more, as a plane that ends at
@@ -117,7 +117,7 @@ impl Surfaces {
     /// come nearer to the plane across the way from there than it may, `within` (m). That plane is no wall: what glides
     /// past a rim would end behind it, and be braked and thrown aside where nothing is. What is at the side or corner
     /// is behind the planes of all triangles around it, so that a point that ends outside of any of them is as far off
-    /// at least, and faces that one; so it does where it lacks much less to that, as what glides over a face that it
+    /// at least, and faces that one; so it does where it lacks clearly less to that, as what glides over a face that it
     /// has sunk into. What meets the rim itself lacks n · n′ as much to a plane of normal n′ as along its way n, and
     /// goes on facing that: where the way and planes are alike, rounding does not choose.
     ///
@@ -144,7 +144,7 @@ impl Surfaces {
             let (normal, corners) = (self.normal(places, triangle), self.corners(places, triangle));
             let gap = (at - corners[0]).dot(normal);
             let lacks_to_it = within - (gap + step.dot(normal));
-            let is_less = lacks_to_it <= f64::max(0.0, MUCH_LESS * facing.normal.dot(normal) * lacks);
+            let is_less = lacks_to_it <= f64::max(0.0, LESS * facing.normal.dot(normal) * lacks);
             let is_behind = |corner: DVec3| {
                 let off = corner - facing.at;
                 off.dot(normal) <= ALIKE * off.length()

@@ -121,7 +121,7 @@ pub(super) fn pair<T: Scalar>(
         let point = &surface.points[number as usize];
         for (facing, first) in [(&faced.first, true), (&faced.second, false)] {
             let Some(facing) = facing else { continue };
-            let facing = &contacts.faced_at_end(number, facing, true, &goes_on);
+            let facing = &contacts.faced_at_end(number, facing, true, goes_on);
             let body = surface.triangles.bodies[facing.triangle as usize];
             let Some(meeting) = contacts.meeting(point.body, body) else { continue };
             let in_step = contacts.in_step(point, facing, clock);

@@ -120,7 +120,7 @@ pub fn of_tools() -> Vec<String> {
 }
 
 /// Parts of `surface_contact`.
-pub const SURFACES: [&str; 21] = [
+pub const SURFACES: [&str; 22] = [
     "surface_contact_apply",
     "surface_contact_begin",
     "surface_contact_edges",
@@ -134,6 +134,7 @@ pub const SURFACES: [&str; 21] = [
     "surface_contact_touch",
     "surface_contacts",
     "surface_contacts_of",
+    "surface_ends",
     "surface_facing",
     "surface_lists",
     "surface_motion",

@@ -134,7 +134,7 @@ fn what_is_before_a_rim_or_a_corner_faces_what_it_ends_the_farthest_outside_of()
         let cube = before_cube(DVec3::new(1.06, y, -0.08), DVec3::Z, 0.0);
         for (step, normal, gap) in [
             // by below the cube, or into it a little above its lower face
-            ([-0.2, 0.0, 0.0], DVec3::NEG_Z, 0.08),
+            ([-0.22, 0.0, 0.0], DVec3::NEG_Z, 0.08),
             ([-0.3, 0.2, 0.1], DVec3::NEG_Z, 0.08),
             // up before its front wall, or into that
             ([-0.02, 0.1, 0.3], DVec3::X, 0.06),
@@ -158,7 +158,7 @@ fn what_is_before_a_rim_or_a_corner_faces_what_it_ends_the_farthest_outside_of()
 #[test]
 fn what_goes_straight_for_a_rim_faces_that() {
     let cube = before_cube(DVec3::new(1.06, 0.3, -0.06), DVec3::Z, 0.0);
-    for (right, up) in [(-0.08, 0.08), (-0.08, 0.09), (-0.09, 0.08), (-0.3, 0.3)] {
+    for (right, up) in [(-0.08, 0.08), (-0.08, 0.085), (-0.085, 0.08), (-0.3, 0.3)] {
         let (found, way) = at_end(&cube, [right, 0.0, up], |_| true);
         assert_eq!(found.normal, way, "{right}, {up}");
     }

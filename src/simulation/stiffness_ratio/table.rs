@@ -46,9 +46,9 @@ impl Table {
             after += 1;
         }
         match beside(&self.points, after) {
-            (Some(before), Some(after)) => on_line(before, after, size),
-            (None, _) => 1.0,
-            (Some((s, g)), None) => (g * (size / s) * (size / s)).min(LARGEST_RATIO),
+            [Some(before), Some(after)] => on_line(before, after, size),
+            [None, _] => 1.0,
+            [Some((s, g)), None] => (g * (size / s) * (size / s)).min(LARGEST_RATIO),
         }
     }
 
@@ -56,13 +56,13 @@ impl Table {
     pub(super) fn until(&self, ratio: f64) -> f64 {
         let after = self.points.partition_point(|(_, g)| *g <= ratio);
         match beside(&self.points, after) {
-            (Some((s0, g0)), Some((s1, g1))) => {
+            [Some((s0, g0)), Some((s1, g1))] => {
                 // a billionth less, so that rounding leads to no more; pieces may be as short as that
                 let size = s0 + (s1 - s0) * (ratio - g0) / (g1 - g0) * (1.0 - 1e-9);
                 if self.at(size) <= ratio { size } else { s0 }
             }
-            (Some((s, _)), None) => s,
-            (None, _) => 0.0,
+            [Some((s, _)), None] => s,
+            [None, _] => 0.0,
         }
     }
 }
@@ -88,15 +88,15 @@ fn never_falling(points: &mut Vec<(f64, f64)>) {
 fn between(kind: &[(f64, f64)], size: f64) -> f64 {
     let after = kind.partition_point(|(s, _)| *s < size);
     match beside(kind, after) {
-        (Some(before), Some(after)) => on_line(before, after, size),
-        (Some((_, g)), None) | (None, Some((_, g))) => g,
-        (None, None) => 1.0,
+        [Some(before), Some(after)] => on_line(before, after, size),
+        [Some((_, g)), None] | [None, Some((_, g))] => g,
+        [None, None] => 1.0,
     }
 }
 
 /// The points before and after a place among them.
-fn beside(points: &[(f64, f64)], after: usize) -> (Option<(f64, f64)>, Option<(f64, f64)>) {
-    (after.checked_sub(1).map(|before| points[before]), points.get(after).copied())
+fn beside(points: &[(f64, f64)], after: usize) -> [Option<(f64, f64)>; 2] {
+    [after.checked_sub(1).map(|before| points[before]), points.get(after).copied()]
 }
 
 /// The ratio of a deformation between two points.
