@@ -74,7 +74,7 @@ fn tools_and_hands_are_where_they_are() {
 }
 
 /// The bar with a skin of a Wavefront text, once it has run so far (s).
-fn bar_with_skin(folder: &std::path::Path, skin: &str, time: f64) -> (App, Entity) {
+fn bar_with_skin(folder: &Path, skin: &str, time: f64) -> (App, Entity) {
     let scene = BAR.replace("material: \"gel\"", "material: \"gel\", skin: (file: \"skin.obj\")");
     std::fs::write(folder.join("skin.obj"), skin).unwrap();
     std::fs::write(folder.join("bar.ron"), scene).unwrap();

@@ -90,7 +90,8 @@ fn where_a_scene_starts_anew_hands_of_before_are_gone_and_others_stay() {
 fn held(app: &mut App, target: Vec3) -> (Entity, Entity) {
     let scene = spawn(app, BAR);
     update(app, 3);
-    let hand = app.world_mut().spawn(SoftGrab::new(scene, picked(app, scene, 0.05), target)).id();
+    let pick = picked(app, scene, 0.05);
+    let hand = app.world_mut().spawn(SoftGrab::new(scene, pick, target)).id();
     update(app, 1);
     (scene, hand)
 }
