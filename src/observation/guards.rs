@@ -7,8 +7,9 @@ use super::sample::{Sample, sample, sample_result};
 use crate::backend::cpu::BlockSums;
 use crate::backend::device::bring_to_host;
 use crate::components::*;
+use crate::elements::point_count;
 use crate::error::{Criterion, Error, Instability};
-use crate::scene::schema::{ElementKind, Guard, Guards, Inversion};
+use crate::scene::schema::{Guard, Guards, Inversion};
 use bevy_ecs::prelude::*;
 
 /// What leads to a breakdown when the scene insists on a step beyond the stable one.
@@ -273,11 +274,11 @@ fn hourglass(memory: &mut GuardMemory, seen: &Sample, settings: &GuardSettings, 
                 true => format!("{:.0} % of", 100.0 * share),
                 false => format!("more than {MOST_TOLD} times"),
             };
-            let is_tet10 = world.get::<Block>(*entity).is_some_and(|block| block.kind == ElementKind::Tet10);
-            let reason = match is_tet10 {
+            // with several points volumes are held to their mean
+            let has_points = world.get::<Block>(*entity).is_some_and(|block| point_count(block.kind) > 1);
+            let reason = match has_points {
                 true => {
-                    "the volume at the points of an element differs from their mean, to which Tet10 is held; use a finer \
-                     mesh"
+                    "the volume at the points of an element differs from their mean, to which it is held; use a finer mesh"
                 }
                 false => "motion that elements with one point do not feel; use Hex8MeanDilatation, a finer mesh",
             };

@@ -258,8 +258,7 @@ fn the_first_element_that_turns_inside_out_is_named() {
 
 #[test]
 fn hourglass_energy_of_a_part_is_warned_of_once() {
-    let reasons =
-        [("Hex8", "elements with one point do not feel"), ("Tet10", "to which Tet10 is held; use a finer mesh")];
+    let reasons = [("Hex8", "elements with one point do not feel"), ("Tet10", "to which it is held; use a finer mesh")];
     for (run, (elements, reason)) in configurations().iter().flat_map(|run| reasons.map(|reason| (run, reason))) {
         let mut simulation = run.start(&format!(
             "(duration: 0.2, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2), elements: {elements}), material: \"m\")}},
