@@ -51,7 +51,7 @@ def test_of_a_body_with_a_skin_that_is_drawn() -> None:
     for text, files in [(BLOCK, {}), (with_skin, {"skin.obj": SKIN})]:
         scene = sinew.Scene.from_text(text, files=files)
         simulation = sinew.Simulation(scene, backend="cpu", threads=1)
-        pictures.append(simulation.picture(size=(160, 120), from_=(1, -2, 0.6)).png)
+        pictures.append(simulation.picture(size=(320, 240), from_=(1, -2, 0.6)).png)
     assert pictures[0] != pictures[1]
 
 

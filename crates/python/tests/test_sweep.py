@@ -176,7 +176,8 @@ def test_processes_give_the_same_bits(sagging: sinew.Scene, pack: float) -> None
 
 
 def test_mistakes_of_ones_own_end_it(sagging: sinew.Scene, tmp_path: Path) -> None:
-    with pytest.raises(ZeroDivisionError, match="at 0.0999"):
+    # of whichever variant ends first
+    with pytest.raises(ZeroDivisionError, match="at 0.(0999|1)"):
         sinew.sweep(sagging, TABLE, keep=kept.wrong, out=tmp_path)
     with pytest.raises(TypeError, match="cannot be kept"):
         sinew.sweep(sagging, TABLE[:1], keep=lambda simulation: {"simulation": simulation})
