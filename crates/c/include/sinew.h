@@ -894,7 +894,8 @@ SinewStatus sinew_port_send(SinewPort *port, const SinewPose *pose);
 /**
  * The last touch that came; before the first one all of it is 0 but the orientation, which is 0, 0, 0, 1.
  */
-SinewStatus sinew_port_touch(SinewPort *port, SinewTouch *touch);
+SinewStatus sinew_port_touch(SinewPort *port,
+                             SinewTouch *touch);
 
 /**
  * Frees a port; NULL is allowed.
