@@ -220,6 +220,8 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
     }
     if both.second.there {
         both.second = at_end(number, point, both.second);
+        // both may end outside of the same
+        both.second.there = both.second.triangle != both.first.triangle;
     }
     return both;
 }

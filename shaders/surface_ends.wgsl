@@ -1,5 +1,9 @@
 // What points face that are before sides and corners, by where they would end.
 
+// What ends before a rim lacks less to a plane there than to the rim where it is so much of what it would lack to the
+// plane if it went straight for the rim.
+const LESS: f32 = 0.8;
+
 // How many triangles are around the side or corner that a point is before, and each of them, ascending.
 fn count_around(facing: Facing) -> u32 {
     if facing.part < 4u {
@@ -39,9 +43,8 @@ fn are_behind(facing: Facing, point: vec3<f32>, normal: vec3<f32>) -> bool {
 }
 
 // What a point faces that is before a side or a corner, by where its step against that ends: a plane beside it to which
-// it lacks nothing or clearly less; twin of systems/surface_contact/ends.rs and src/contact/rims.rs.
-const LESS: f32 = 0.8;
-
+// it lacks nothing or clearly less, of such as are alike the first, where f32 knows them apart; twin of
+// systems/surface_contact/ends.rs and src/contact/rims.rs.
 fn at_end(point_number: u32, point: vec3<f32>, facing: Facing) -> Facing {
     let meets = meeting_with(facing.triangle);
     // a spring does not ask where a step ends

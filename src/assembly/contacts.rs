@@ -295,8 +295,10 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
             let speed = motion.fastest(reach);
             if speed * clock.time_step > FARTHEST * contacts.edge {
                 let message = format!(
-                    "the tool `{}` goes up to {speed:.3e} m/s, {:.3e} m a step, and faces of `{name}` have edges of {:.3e} m",
+                    "the tool `{}` {} {speed:.3e} m/s, {:.3e} m a step, and faces of `{name}` have edges of {:.3e} m",
                     contact.tool,
+                    // a bound, and a wide one
+                    if tool.pivot.is_some() { "may, as far as its pivot tells, go up to" } else { "goes up to" },
                     speed * clock.time_step,
                     contacts.edge,
                 );

@@ -14,13 +14,12 @@ const FARTHEST: f64 = 0.5;
 pub(super) fn insert(assembly: &Assembly<'_>, world: &mut World) {
     let (scene, clock) = (&assembly.scene.scene, *world.resource::<Clock>());
     let of_removal = |removal: &ToolRemoval| (removal.tool.clone(), reach_of(removal));
-    let of_suction = |suction: &Suction| (suction.tool.clone(), suction.reach.min(suction.bore));
-    let mut mouths: Vec<(String, f64)> = world.query::<&Suction>().iter(world).map(of_suction).collect();
+    let of_suction = |suction: &Suction| (suction.tool.clone(), (0.0, suction.reach.min(suction.bore)));
+    let mut mouths: Vec<(String, (f64, f64))> = world.query::<&Suction>().iter(world).map(of_suction).collect();
     let mut removals = world.query::<&ToolRemovals>();
     mouths.extend(removals.iter(world).flat_map(|removals| &removals.all).map(of_removal));
-    let steps = |(tool, reach): &(String, f64)| {
-        // of its origin, about which mouths are
-        let speed = motion(scene.tools.get(tool)?).fastest(0.0);
+    let steps = |(tool, (arm, reach)): &(String, (f64, f64))| {
+        let speed = motion(scene.tools.get(tool)?).fastest(*arm);
         Some(FARTHEST * reach / (speed * clock.time_step))
     };
     let most = criterion_steps(&clock) as f64;
@@ -31,11 +30,14 @@ pub(super) fn insert(assembly: &Assembly<'_>, world: &mut World) {
     world.insert_resource(ToolLooks(fewest.max(1.0) as u64));
 }
 
-/// How far from its middle a tool takes elements at least (m).
-fn reach_of(removal: &ToolRemoval) -> f64 {
-    let inside = match &removal.mouth {
-        Mouth::Disc(_) => 0.0,
-        Mouth::Tool(solid) => solid.bounding_sphere().map_or(0.0, |(middle, _)| -solid.distance(middle).0),
+/// How far the middle of what takes elements is from the tool's origin, and how far from there it takes them at least
+/// (both m). A disc is about the origin.
+fn reach_of(removal: &ToolRemoval) -> (f64, f64) {
+    let (arm, inside) = match &removal.mouth {
+        Mouth::Disc(_) => (0.0, 0.0),
+        Mouth::Tool(solid) => {
+            solid.bounding_sphere().map_or((0.0, 0.0), |(middle, _)| (middle.length(), -solid.distance(middle).0))
+        }
     };
-    removal.reach + inside.max(0.0)
+    (arm, removal.reach + inside.max(0.0))
 }

@@ -123,7 +123,7 @@ impl Surfaces {
     ///
     /// Not asked are planes that the point is behind as it is, for it would be thrown out, those of triangles that it
     /// may not meet, and those before which some of what is around the place rises by more than a twentieth.
-    pub fn faced_at_end(
+    pub fn flank_at_end(
         &self,
         places: &[DVec3],
         (point, step, within): (&Point, DVec3, f64),

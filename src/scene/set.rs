@@ -169,7 +169,11 @@ impl<'a> Slot<'a> {
                     .iter()
                     .filter_map(|entry| if let Kind::Text(key) = &entry.key.kind { Some(key.as_str()) } else { None })
                     .collect();
-                Err((format!("there is no `{name}` in {holder}"), choice(name, names)))
+                let dotted =
+                    names.iter().find(|known| known.split('.').next() == Some(name.as_str()) && *known != name);
+                let quoted = dotted.map(|known| format!("names with dots stand in quotes: `\"{known}\"`"));
+                let notes = quoted.into_iter().chain(choice(name, names.iter().copied())).collect();
+                Err((format!("there is no `{name}` in {holder}"), notes))
             }
             (Segment::Name(_), Kind::Map(_) | Kind::Fields(_)) => Self::insert(rest, inner, text),
             (Segment::Name(_), Kind::Tuple(items)) if items.is_empty() => Self::insert(rest, inner, text),
@@ -203,7 +207,12 @@ impl<'a> Slot<'a> {
         }
         if holder.span.is_empty() {
             let name = new.first().map_or("", |(name, _)| name);
-            return Err((format!("only parts have such: there is nothing to put `{name}` into"), Vec::new()));
+            let notes = vec![
+                "what a part brings can be changed, and added to: `parts.NAME.content. ...`; or give the scene an empty \
+                 one of its own, as `probes: {}`"
+                    .to_string(),
+            ];
+            return Err((format!("only parts have such: there is nothing to put `{name}` into"), notes));
         }
         // before the first that is there, where the comma after it is right; comments may stand anywhere else
         let first = match &holder.kind {

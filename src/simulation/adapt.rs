@@ -140,7 +140,7 @@ impl Simulation {
         Error::Unstable(Box::new(Instability {
             time: self.time(),
             step: self.step_count(),
-            body,
+            body: if by_loads { String::new() } else { body },
             what: format!(
                 "the stable step has shrunk to {wanted:.3e} s, less than a {:.0}th of {:.3e} s at the start; {worst}",
                 1.0 / LEAST,

@@ -30,7 +30,7 @@ impl SurfaceContacts {
         let corners = |triangle: u32| surface.triangles.triangles[triangle as usize];
         let is_own = |triangle: u32| point.parts().any(|(node, _)| corners(triangle).contains(&node));
         let may_meet = |triangle: u32| !is_own(triangle) && surface.apart.binary_search(&(number, triangle)).is_err();
-        let mut found = surface.triangles.faced_at_end(&surface.places, (point, step, within), *facing, may_meet);
+        let mut found = surface.triangles.flank_at_end(&surface.places, (point, step, within), *facing, may_meet);
         // of what it has faced up to now it is known
         if point.triangle.is_some() && found.part == 0 {
             found.gap = surface.gap_of_facet(point, &found);

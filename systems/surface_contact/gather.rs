@@ -160,7 +160,9 @@ impl Nodes<'_> {
         let step = |point: &Point, facing: &Facing| self.parts(&contacts.surface, point, facing).step(self.steps);
         let at_end = |facing: &Facing| contacts.faced_at_end(number, facing, false, step);
         let [first, second] = [&faced.first, &faced.second].map(|facing| facing.as_ref().map(at_end));
-        Faced { first, second, ..*faced }
+        // both may end outside of the same
+        let is_other = |second: &Facing| first.is_none_or(|first| first.triangle != second.triangle);
+        Faced { first, second: second.filter(is_other), ..*faced }
     }
 
     /// Adds a contact of nodes with weights, along a normal with a gap (m), if it ends nearer than `within` (m): as far

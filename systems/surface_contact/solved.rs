@@ -118,10 +118,14 @@ pub(super) fn pair<T: Scalar>(
         surface.between(point, facing).0.into_iter().map(step).sum()
     };
     for &(number, faced) in found.iter().flatten() {
-        let point = &surface.points[number as usize];
+        let (point, mut of_first) = (&surface.points[number as usize], None);
         for (facing, first) in [(&faced.first, true), (&faced.second, false)] {
             let Some(facing) = facing else { continue };
             let facing = &contacts.faced_at_end(number, facing, true, goes_on);
+            // both may end outside of the same
+            if of_first.replace(facing.triangle) == Some(facing.triangle) {
+                continue;
+            }
             let body = surface.triangles.bodies[facing.triangle as usize];
             let Some(meeting) = contacts.meeting(point.body, body) else { continue };
             let in_step = contacts.in_step(point, facing, clock);

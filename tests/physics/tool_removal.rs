@@ -182,6 +182,24 @@ fn a_quick_tip_leaves_no_gaps() {
     }
 }
 
+/// So it is of a wand that swings, and whose origin stands still.
+#[test]
+fn what_swings_leaves_no_gaps() {
+    let swing = |at: f64| format!("(t: {at}, at: (0.02, 0.005, 0.05), rotation: (0, 150, 0))");
+    let path = format!("{}, (t: 0.012, at: (0.02, 0.005, 0.05), rotation: (0, 210, 0))", swing(0.0));
+    for run in cpu_and_long_gpu() {
+        let [quick, slow] = [path.clone(), path.replace("0.012", "0.12")].map(|path| {
+            let wand = "Capsule(length: 0.045, radius: 1e-3)";
+            let scene = passed(&path, "reach: 1e-4, rate: 1").replace("Sphere(radius: 2e-3)", wand);
+            let mut simulation = run.start(&scene);
+            simulation.advance_to(0.14).unwrap();
+            gone(&mut simulation) / CELL
+        });
+        // it may just meet a centroid or not
+        assert!(slow > 20.0 && (quick - slow).abs() < 2.1, "{}: {quick} and {slow} cells", run.name);
+    }
+}
+
 /// What a tool has taken in of a cell when it leaves the tissue is there when it comes again: in ten visits of .4 cells
 /// each four go.
 #[test]

@@ -260,6 +260,8 @@ fn mistakes_around_parts_are_shown_where_the_part_is_named() {
     let expected = "--set probes={}: only parts have such: there is no `probes` in the scene to be changed as a whole | \
                     what is in it can be changed, or what a part brings: `parts.NAME.content.probes`";
     assert!(told.contains(expected), "{told}");
+    let told = brief(WHOLE, files(), &["bodies.eye.lens.refine=1"]);
+    assert!(told.contains("there is no `eye` in `bodies` | names with dots stand in quotes: `\"eye.lens\"`"), "{told}");
     // as it says
     let scene = read(WHOLE, files(), &["parts.tip.content.probes={}"]).unwrap();
     assert_eq!(scene.scene.probes.keys().collect::<Vec<_>>(), ["eye.top"]);

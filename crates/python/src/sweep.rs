@@ -7,7 +7,9 @@ use crate::{errors, values};
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt};
-use sinew_studies::sweep::{Done, Kept, Keys, Part, Results, SweepError, SweepFile, Value, Variants, warned};
+use sinew_studies::sweep::{
+    Done, Kept, Keys, Part, Results, SweepError, SweepFile, Value, Variants, check_times, warned,
+};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -56,9 +58,10 @@ impl SweepResults {
             of_rows.push(own);
         }
         let kept = match &keep {
-            Keep::Probes(names) => Kept::of(scene.file(), names, &at).map_err(PyValueError::new_err)?,
-            Keep::Function(_) => Kept::default(),
+            Keep::Probes(names) => Kept::of(scene.file(), names, &at),
+            Keep::Function(_) => check_times(&at).map(|()| Kept::default()),
         };
+        let kept = kept.map_err(PyValueError::new_err)?;
         let (which, of) = part;
         let results = Results::open(&folder, Part { which, of }, keys).map_err(|error| failed(&error))?;
         Ok(Self { results: Mutex::new(results), places, values: of_rows, kept })

@@ -57,6 +57,13 @@ def test_probes_at_times(sagging: sinew.Scene) -> None:
     assert row.kept["top"][0, 2] > row.kept["top"][1, 2] > row.kept["top"][2, 2]
 
 
+@pytest.mark.parametrize("at", [[0.02, 0.01], [0.01, 0.01], [float("nan")], [-1.0]])
+def test_times_that_do_not_ascend_are_refused(sagging: sinew.Scene, at: list[float]) -> None:
+    for keep in (["top"], kept.shape):
+        with pytest.raises(ValueError, match="no time|ascend"):
+            sinew.sweep(sagging, [{YOUNG: 5000}], keep=keep, at=at)
+
+
 def test_times_within_a_step_are_met(sagging: sinew.Scene) -> None:
     steps = {"solver": "Implicit(step: 0.01)"}
     (row,) = sinew.sweep(sagging, [steps], keep=["top"], at=[0.01, 0.0125, 0.0175, 0.02])

@@ -116,7 +116,7 @@ fn at_end(
     let way = (at - nearest) / gap;
     let facing = Facing { triangle, weights, at: nearest, normal: way, gap, part: part as u32 };
     let point = Point { triangle: Some(12), ..Point::node(1, 8) };
-    let found = surfaces.faced_at_end(places, (&point, DVec3::from(step), 0.0), facing, may_meet);
+    let found = surfaces.flank_at_end(places, (&point, DVec3::from(step), 0.0), facing, may_meet);
     if found.part == 0 {
         // what bears it is below it, so that forces have no moment
         let corners = surfaces.corners(places, found.triangle);

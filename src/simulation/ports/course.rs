@@ -149,6 +149,10 @@ impl PortState {
             }
         }
         (self.way, self.change) = (way, change);
+        if !felt.in_contact {
+            // the slopes stay, but what is touched next may be other tissue
+            (self.ways, self.changes) = (faded(self.ways), faded(self.changes));
+        }
         self.touched = felt.in_contact.then_some(middle);
         self.force = felt.force;
         self.felt_at = step;
@@ -175,9 +179,15 @@ impl PortState {
     }
 }
 
+/// Sums of which a batch has passed.
+fn faded(sums: [f64; 2]) -> [f64; 2] {
+    sums.map(|sum| FORGET * sum)
+}
+
 /// Sums with another square and another product, of which earlier ones fade; none beyond all numbers.
-fn with([squares, products]: [f64; 2], square: f64, product: f64) -> [f64; 2] {
-    let sums = [FORGET * squares + square, FORGET * products + product];
+fn with(sums: [f64; 2], square: f64, product: f64) -> [f64; 2] {
+    let [squares, products] = faded(sums);
+    let sums = [squares + square, products + product];
     if sums.iter().all(|sum| sum.is_finite()) { sums } else { [0.0; 2] }
 }
 

@@ -8,7 +8,7 @@ mod rows;
 mod table;
 
 pub use manifest::{Done, Ended, Keys, warned};
-pub use rows::{Kept, Results};
+pub use rows::{Kept, Results, check_times};
 pub use table::{SweepFile, Value, Variants};
 
 use serde_json::Value as Json;

@@ -16,12 +16,27 @@ pub struct Kept {
     at: Vec<f64>,
 }
 
+/// Whether these are times (s) that ascend.
+///
+/// # Errors
+/// Which are not.
+pub fn check_times(times: &[f64]) -> Result<(), String> {
+    if let Some(time) = times.iter().find(|time| !(time.is_finite() && **time >= 0.0)) {
+        return Err(format!("at: {time} is no time: 0 s or later is wanted"));
+    }
+    match times.windows(2).find(|pair| pair[0] >= pair[1]) {
+        Some(pair) => Err(format!("at: {} s stands after {} s; times must ascend", pair[1], pair[0])),
+        None => Ok(()),
+    }
+}
+
 impl Kept {
     /// Of a scene's probes, at times (s).
     ///
     /// # Errors
-    /// A probe that it has not; a time that it has not.
+    /// A probe that it has not; a time that it has not; times that do not ascend.
     pub fn of(scene: &SceneFile, keep: &[String], at: &[f64]) -> Result<Self, String> {
+        check_times(at)?;
         let probes = &scene.scene.probes;
         let columns = keep.iter().map(|name| match probes.get(name) {
             // of its table, less the time

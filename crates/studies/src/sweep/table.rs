@@ -92,12 +92,7 @@ impl SweepFile {
         if self.keep.is_empty() {
             return Err("keep: name at least one probe, or nothing comes of the sweep".into());
         }
-        if let Some(time) = self.at.iter().find(|time| !(time.is_finite() && **time >= 0.0)) {
-            return Err(format!("at: {time} is no time: 0 s or later is wanted"));
-        }
-        if let Some(pair) = self.at.windows(2).find(|pair| pair[0] >= pair[1]) {
-            return Err(format!("at: {} s stands after {} s; times must ascend", pair[1], pair[0]));
-        }
+        check_times(&self.at)?;
         self.variants.check()
     }
 }

@@ -90,3 +90,23 @@ fn the_stiffness_told_stays_while_nothing_moves() {
     }
     assert!((state.stiffness() - 300.0).abs() < 1.0, "{} N/m", state.stiffness());
 }
+
+/// What was learned of hard tissue, going far in each batch, is not told of soft tissue that is touched a second later.
+#[test]
+fn what_is_touched_next_may_be_other_tissue() {
+    let port = Port { name: "hand".into(), speed: 0.3, spin: 360.0, every: 1e-3, follow: Follow::Position };
+    let mut state = PortState::at((0.0, DVec3::ZERO, DQuat::IDENTITY));
+    let (mut clock, mut depth) = (Clock::with_step(1e-3), 0.0);
+    for (stiffness, way, batches) in [(1000.0, 1e-4, 50), (0.0, 0.0, 1000), (50.0, 2e-5, 11)] {
+        for _ in 0..batches {
+            depth = if stiffness == 0.0 { 0.0 } else { depth + way };
+            state.target(&DevicePose { place: DVec3::X * depth, ..DevicePose::default() });
+            state.begin(&port, &clock);
+            let [start, end] = state.path.map(|key| key.1.x);
+            clock.step = state.ends;
+            let force = DVec3::X * (-0.5 * stiffness * (start + end));
+            state.end(&port, Felt { force, in_contact: stiffness > 0.0, ..Felt::default() }, clock.step);
+        }
+    }
+    assert!((state.stiffness() / 50.0 - 1.0).abs() < 0.01, "{} N/m", state.stiffness());
+}
