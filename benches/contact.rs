@@ -6,8 +6,9 @@
 //! `cargo bench --bench contact`; `-- large` and `-- small` run only some of it, `-- turns` whole steps of 10 368 and
 //! of 82 944 tetrahedra a block on one thread and on two, to compare two programs by turns (`-- turns 12` only the
 //! former), `-- near` only steps with a fifth that touches, for profiles (`-- near faces`, `-- far`; `-- near 500` so
-//! many). Steps are timed in blocks by turns, and the best of each counts: so other work on the machine does not. What
-//! lists take is added, spread over the steps that they serve.
+//! many), `-- cells 64` whole steps of blocks of 64³ cells (147 456 faces, 4.7 million tetrahedra, some gigabytes),
+//! `-- lists 168` lists of a million faces. Steps are timed in blocks by turns, and the best of each counts: so other
+//! work on the machine does not. What lists take is added, spread over the steps that they serve.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use bevy_ecs::change_detection::DetectChangesMut;
@@ -22,9 +23,10 @@ use std::time::Instant;
 #[global_allocator]
 static COUNTED: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Steps that are timed at once, and how often.
+/// Steps that are timed at once, and how often; of blocks with more cells along an edge less often.
 const BLOCK: u64 = 8;
 const TURNS: usize = 60;
+const MANY_CELLS: u32 = 40;
 
 /// Three blocks of 2 cm one above the other, so far apart (m), the lowest held; the middle one is turned, so that no
 /// node meets another, and goes at a speed (m/s). All are heavy, or contact would have to pay for the column of loads.
@@ -90,7 +92,7 @@ fn shares((elements, points): (&str, &str), cells: u32, threads: usize, speed: f
     // until they bear each other
     all[3].advance(200).unwrap();
     let before = all[3].world().resource::<SurfaceContacts>().figures();
-    for _ in 0..TURNS {
+    for _ in 0..if cells > MANY_CELLS { TURNS / 5 } else { TURNS } {
         for (simulation, best) in all.iter_mut().zip(&mut best) {
             let started = Instant::now();
             simulation.advance(BLOCK).unwrap();
@@ -204,6 +206,13 @@ fn main() {
         return near.advance(steps.unwrap_or(10000)).unwrap();
     }
     let [nodes, faces] = [("Tet4", "Nodes"), ("Tet4", "Faces")];
+    let number = || std::env::args().find_map(|argument| argument.parse().ok()).expect("how many cells");
+    if asked("cells") {
+        return [nodes, faces].into_iter().for_each(|points| shares(points, number(), 1, 0.0));
+    }
+    if asked("lists") {
+        return lists(number());
+    }
     if asked("turns") {
         for (cells, threads) in [(12, 1), (12, 2), (24, 1), (24, 2)] {
             if [12, 24].iter().all(|only| *only == cells || !asked(&only.to_string())) {
