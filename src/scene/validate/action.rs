@@ -53,12 +53,7 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
             _ => {}
         }
         untouched(scene_, validator, &what, probe);
-        if let (Some(_), Some(_)) = (probe.what.attachment(), &probe.on) {
-            validator
-                .out
-                .error_at(path.name("on"), "what an attachment bears is of the whole attachment")
-                .note("leave `on` out");
-        }
+        whole(validator, &path, probe);
         match (probe.what.tool(), &probe.on) {
             // whether it is there is looked at with the attachments
             _ if probe.what.attachment().is_some() => {}
@@ -68,20 +63,32 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
                 let message = format!("the probe `{name}` lacks `on`: which nodes or elements it is of");
                 validator.out.error_at(&path, message).note("on: All, Set(...), Plane(...), ...");
             }
-            (Some(tool), on) => {
+            (Some(tool), _) => {
                 if !scene_.tools.contains_key(tool) {
                     let tools = scene_.tools.keys().map(String::as_str);
                     let message = format!("there is no tool `{tool}`");
                     validator.out.error_at(what.name("tool"), message).notes(choice(tool, tools));
                 }
-                if on.is_some() {
-                    validator
-                        .out
-                        .error_at(path.name("on"), "what a tool feels is of the whole tool")
-                        .note("leave `on` out");
-                }
             }
         }
+    }
+}
+
+/// Probes of tools and attachments that ask for less than the whole.
+fn whole(validator: &mut Validator, path: &Path, probe: &Probe) {
+    let of_what = match (probe.what.attachment(), probe.what.tool()) {
+        (Some(_), _) => "what an attachment bears is of the whole attachment",
+        (None, Some(_)) => "what a tool feels is of the whole tool",
+        (None, None) => return,
+    };
+    if probe.on.is_some() {
+        validator.out.error_at(path.name("on"), of_what).note("leave `on` out");
+    }
+    if probe.body.is_some() {
+        validator
+            .out
+            .error_at(path.name("body"), of_what)
+            .note("leave `body` out; `ContactForce` with a `body` is what that body feels");
     }
 }
 

@@ -1,6 +1,6 @@
 //! The file of a sweep: which variants there are.
 
-use super::SweepError;
+use super::{SweepError, check_times};
 use fastrand::Rng;
 use serde::{Deserialize, Serialize};
 use std::fmt;
