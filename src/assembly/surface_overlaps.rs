@@ -212,7 +212,7 @@ fn overlap(
             .error_at(path, message)
             .note(nodes)
             .notes(most.then(|| same.to_string()))
-            .note(format!("up to half an edge of a face, {:.3e} m, is pushed out", DEEPEST * edge));
+            .note(format!("up to half an edge of a face, {:.3e} m, is pushed out: move one apart so far", DEEPEST * edge));
     } else {
         let message = format!("{many} of `{of}` {is} inside {place} at the start, the deepest by {deepest:.3e} m");
         diagnostics.warn_at(path, message).note(nodes).note("they are pushed out while a wave goes through the body");

@@ -221,6 +221,8 @@ fn probes_of_tools_name_one_that_is_there_and_no_nodes() {
     assert_eq!(of("what: ToolForce(tool: \"rod\")"), "");
     assert!(of("what: ToolForce(tool: \"ro\")").contains("there is no tool `ro` | did you mean `rod`?"));
     assert!(of("what: ToolTorque(tool: \"rod\"), on: All").contains("what a tool feels is of the whole tool"));
+    // as if it were what one of several bodies feels
+    assert!(of("what: ToolForce(tool: \"rod\"), body: \"b\"").contains("is of the whole tool | leave `body` out"));
     assert!(of("what: Displacement").contains("the probe `p` lacks `on`"));
 }
 

@@ -21,12 +21,13 @@ use std::path::{Path, PathBuf};
 const STATUSES: &str = "\
 Exit status:
   0    done
-  1    the simulation broke down; what was written until then is kept. hard: a case did not end as it should
+  1    the simulation broke down, or found no equilibrium, or unload no shape; what was written
+       until then is kept. hard: a case did not end as it should. bench: slower than --compare
   2    the scene or the options are wrong; nothing was run
-  3    outputs could not be written
+  3    outputs could not be written, or another run writes into the folder
   4    there is no GPU, or it failed
   5    accuracy: the scene as it is written does not meet its --target
-  6    accuracy: the reference is too coarse to tell whether it does
+  6    accuracy: the reference is too coarse to tell, or the scene as it is written did not run
   130  interrupted; what was written until then is kept";
 
 /// Soft tissue, fast: total Lagrangian explicit finite elements on the CPU and the GPU.

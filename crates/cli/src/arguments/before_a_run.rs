@@ -26,7 +26,7 @@ pub struct MeshArguments {
     #[arg(long)]
     pub no_picture: bool,
     /// The folder for the picture and fields.pvd, in place of earlier ones [default: out/NAME-mesh]
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
 
@@ -48,7 +48,7 @@ pub struct ModesArguments {
     #[arg(long)]
     pub no_picture: bool,
     /// The folder for the animation and fields.pvd, in place of earlier ones [default: out/NAME-OF-THE-SCENE-modes]
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
 
