@@ -208,11 +208,9 @@ fn overlap(
     let same = "more than half of the nodes of its surface are: they would not know which way out";
     if deep > 0 || most {
         let message = format!("{many} of `{of}` {is} inside {place} at the start, {deep} of them deep");
-        diagnostics
-            .error_at(path, message)
-            .note(nodes)
-            .notes(most.then(|| same.to_string()))
-            .note(format!("up to half an edge of a face, {:.3e} m, is pushed out: move one apart so far", DEEPEST * edge));
+        let out =
+            format!("up to half an edge of a face, {:.3e} m, is pushed out: move one apart so far", DEEPEST * edge);
+        diagnostics.error_at(path, message).note(nodes).notes(most.then(|| same.to_string())).note(out);
     } else {
         let message = format!("{many} of `{of}` {is} inside {place} at the start, the deepest by {deepest:.3e} m");
         diagnostics.warn_at(path, message).note(nodes).note("they are pushed out while a wave goes through the body");
