@@ -189,7 +189,7 @@ fn what_swings_leaves_no_gaps() {
     let path = format!("{}, (t: 0.012, at: (0.02, 0.005, 0.05), rotation: (0, 210, 0))", swing(0.0));
     for run in cpu_and_long_gpu() {
         let [quick, slow] = [path.clone(), path.replace("0.012", "0.12")].map(|path| {
-            let wand = "Capsule(length: 0.045, radius: 1e-3)";
+            let wand = "Capsule(length: 0.045, radius: 1.3e-3)";
             let scene = passed(&path, "reach: 1e-4, rate: 1").replace("Sphere(radius: 2e-3)", wand);
             let mut simulation = run.start(&scene);
             simulation.advance_to(0.14).unwrap();
