@@ -150,8 +150,8 @@ pub(super) fn gives_back(memory: &mut GuardMemory, made: f64, settings: &GuardSe
         ),
         (false, _) => (
             ("contact gave back", "than it took"),
-            "points that began inside or have sunk in are pushed out; more `sweeps` of the contact or finer faces let \
-             less sink in",
+            "points that began inside or have sunk in are pushed out; a lower integration.safety, more `sweeps` of the \
+             contact or finer faces let less sink in",
         ),
         (true, false) => (
             ("springs of contact gave back", "than they got"),

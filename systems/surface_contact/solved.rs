@@ -12,6 +12,7 @@ use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::RunSystemOnce;
 use glam::{DMat3, DVec3};
+use smallvec::SmallVec;
 
 /// A point and what it faces in a step. Weights and normal are those at its beginning, as in explicit steps: what a
 /// point faces would change all at once where it comes round a corner, and of some steps there were no end.
@@ -19,8 +20,10 @@ use glam::{DMat3, DVec3};
 pub(super) struct Pair {
     meeting: Meeting,
     point: u32,
-    /// Whether it is the first face of the point: only there slip is kept.
+    /// Whether it is the first face of the point: only there it is kept how it got there, and how far it has slipped.
     first: bool,
+    /// Whether edges cross, of which nothing is kept.
+    crosses: bool,
     normal: DVec3,
     /// Nodes with signed weights.
     nodes: SignedNodes,
@@ -118,14 +121,15 @@ pub(super) fn pair<T: Scalar>(
         surface.between(point, facing).0.into_iter().map(step).sum()
     };
     for &(number, faced) in found.iter().flatten() {
-        let (point, mut of_first) = (&surface.points[number as usize], None);
-        for (facing, first) in [(&faced.first, true), (&faced.second, false)] {
-            let Some(facing) = facing else { continue };
-            let facing = &contacts.faced_at_end(number, facing, true, goes_on);
-            // both may end outside of the same
-            if of_first.replace(facing.triangle) == Some(facing.triangle) {
-                continue;
-            }
+        let point = &surface.points[number as usize];
+        let at_end = |facing: &Facing| contacts.faced_at_end(number, facing, true, goes_on);
+        let both = [&faced.first, &faced.second].into_iter().flatten().map(at_end);
+        let mut both: SmallVec<[Facing; 2]> = both.collect();
+        // of walls that are as near rounding chooses which is the first, and what is kept of one would be taken for what
+        // is kept of the other; both may end outside of the same
+        both.sort_by_key(|facing| facing.triangle);
+        both.dedup_by_key(|facing| facing.triangle);
+        for (facing, first) in both.iter().zip([true, false]) {
             let body = surface.triangles.bodies[facing.triangle as usize];
             let Some(meeting) = contacts.meeting(point.body, body) else { continue };
             let in_step = contacts.in_step(point, facing, clock);
@@ -144,7 +148,8 @@ pub(super) fn pair<T: Scalar>(
                 Some(_) => DVec3::ZERO,
             };
             let (point, normal) = (number, facing.normal);
-            add(Pair { meeting, point, first, normal, nodes, points, allowed, offset: 0.0, turned }, gap);
+            let crosses = false;
+            add(Pair { meeting, point, first, crosses, normal, nodes, points, allowed, offset: 0.0, turned }, gap);
         }
     }
     // nothing is known of how edges slipped that cross
@@ -159,6 +164,7 @@ pub(super) fn pair<T: Scalar>(
             meeting,
             point: one.nodes[0],
             first: false,
+            crosses: true,
             normal: crossing.normal,
             nodes,
             points: one.nodes.len(),
@@ -293,12 +299,13 @@ fn add<T: Scalar>(
     bodies: &mut [BodySlices<'_, T>],
     all: &mut Vec<Slopes>,
 ) {
-    let &Pair { meeting, point, first, normal, .. } = pair;
+    let &Pair { meeting, point, first, crosses, normal, .. } = pair;
     let Some(spring) = meeting.spring else { return };
     let kept = contacts.kept(point);
     let touch = bodies[kept.body].kept(kept);
     let state = touch[4].to_f64();
-    let kept = if first && state >= STICKS { vector_at(touch, 0) } else { DVec3::ZERO };
+    // of a second face, too: what has slipped along both is the same
+    let kept = if !crosses && state >= STICKS { vector_at(touch, 0) } else { DVec3::ZERO };
     let slip = kept - pair.turned;
     let friction = meeting.friction[usize::from(state == SLIDES)];
     let mut parts = Parts::default();
