@@ -317,6 +317,12 @@ pub(super) fn instants(duration: f64) -> impl Iterator<Item = f64> {
     (0..=INSTANTS).map(move |instant| duration * f64::from(instant) / f64::from(INSTANTS))
 }
 
+/// Where a tool that is not led is on its way, as far as a run goes.
+pub(super) fn way(motion: &ToolMotion, duration: f64) -> impl Iterator<Item = Pose> {
+    let times = instants(duration).chain(motion.path.iter().map(|key| key.0).filter(move |time| *time <= duration));
+    times.map(move |time| motion.meant(time))
+}
+
 /// Warns of a tool that stays so far from where a body begins as nobody means who counts in metres.
 fn stays_far(
     contact: &ToolContact,
@@ -327,8 +333,7 @@ fn stays_far(
     let Some((middle, radius)) = contact.geometry.bounding_sphere().filter(|_| !motion.is_led()) else { return };
     let (low, high) = bounds(&body.placed.mesh.points);
     let across = low.distance(high);
-    let times = instants(duration).chain(motion.path.iter().map(|key| key.0));
-    let places = times.map(|time| motion.meant(time).place(middle));
+    let places = way(motion, duration).map(|pose| pose.place(middle));
     let nearest = places.map(|place| place.distance(0.5 * (low + high))).fold(f64::INFINITY, f64::min);
     let away = nearest - radius - 0.5 * across;
     if away > FAR * across {

@@ -1,7 +1,7 @@
 //! Tools that suck: names become mouths, and bodies tell their faces.
 
 use super::body_columns::stiffnesses;
-use super::contacts::{edge, motion, reference};
+use super::contacts::{bounds, edge, motion, reference, way};
 use super::loads::corners_of;
 use super::{Assembly, BodyParts};
 use crate::components::*;
@@ -17,6 +17,9 @@ use std::sync::Arc;
 /// Edges of faces that are so many times as long as a mouth is across are told of.
 const COARSE: f64 = 2.0;
 
+/// How much farther than `reach`, in edges of faces, nodes of a body may be of which middles of faces are in reach.
+const FACE: f64 = 2.0;
+
 /// Spawns all tools that suck.
 pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
     let scene = &assembly.scene.scene;
@@ -27,6 +30,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let Some(bore) = suction.bore.or(bore(tool)) else { continue };
         soft(body, (number, suction), world, diagnostics);
         coarse(body, number, bore, diagnostics);
+        stays_away(body, (number, suction), (scene, tool, bore), world, diagnostics);
         mouths.push((&suction.tool, bore));
         let (faces, count) = of_body.entry(body.entity).or_insert_with(|| (Arc::new(faces(body, world)), 0));
         let reference = reference(&body.placed.mesh.points);
@@ -96,6 +100,49 @@ fn coarse(body: &BodyParts, number: usize, bore: f64, diagnostics: &mut Diagnost
             .warn_at(format!("suction[{number}]").as_str(), message)
             .note("the pull is that of the mouth, but spread over whole faces: a finer mesh shows what is drawn in");
     }
+}
+
+/// Warns of a mouth that, as the body is at the start, is nowhere on its way as near to it as it sucks.
+fn stays_away(
+    body: &BodyParts,
+    (number, suction): (usize, &schema::Suction),
+    (scene, tool, bore): (&schema::Scene, &schema::Tool, f64),
+    world: &World,
+    diagnostics: &mut Diagnostics,
+) {
+    let motion = motion(tool);
+    // where hands, programs and forces will move it nobody knows
+    if motion.is_led() || tool.free.is_some() {
+        return;
+    }
+    let (Some(rest), Some(u)) = (world.get::<RestPosition>(body.entity), world.get::<Displacement>(body.entity)) else {
+        return;
+    };
+    let place = |row: u32| rest.0[row as usize] + u.vector(row as usize);
+    let points: Vec<DVec3> = body.node_rows.iter().map(|&row| place(row)).collect();
+    let (low, high) = bounds(&points);
+    // what counts are middles of faces, which are less than an edge or two from a node
+    let near = suction.reach + FACE * edge(body);
+    let mouth = Mouth::Disc(bore);
+    let mut nearest = f64::INFINITY;
+    for pose in way(&motion, scene.duration) {
+        let outside = pose.at.distance(pose.at.clamp(low, high)) - bore;
+        if outside >= nearest {
+            continue;
+        }
+        let distances = points.iter().map(|&x| mouth.distance(pose.inverse(x)));
+        nearest = distances.fold(nearest, f64::min);
+        if nearest <= near {
+            return;
+        }
+    }
+    let Some(name) = scene.body_meant(&suction.body) else { return };
+    let message = format!(
+        "as `{name}` is at the start, the mouth of `{}` comes no nearer to it than {nearest:.3e} m: it sucks nothing",
+        suction.tool
+    );
+    let note = format!("`reach` is {:.3e} m: let the tool come nearer, or reach farther", suction.reach);
+    diagnostics.warn_at(format!("suction[{number}]").as_str(), message).note(note);
 }
 
 /// The faces that may be sucked.

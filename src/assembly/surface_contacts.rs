@@ -74,8 +74,8 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World) {
 fn met_by(contacts: &SurfaceContacts, number: usize) -> Vec<Met> {
     let of_body = |body: Entity| {
         let other = contacts.bodies.iter().position(|of| *of == body)?;
-        let Meeting { thickness, faces, edge, .. } = contacts.meetings[number * contacts.bodies.len() + other]?;
-        Some(Met { body, thickness, faces, edge_of_body: contacts.edges[other], edge })
+        let Meeting { thickness, faces, edge, spring, .. } = contacts.meetings[number * contacts.bodies.len() + other]?;
+        Some(Met { body, thickness, faces, spring: spring.is_some(), edge_of_body: contacts.edges[other], edge })
     };
     contacts.met_by(number).into_iter().filter_map(of_body).collect()
 }

@@ -34,6 +34,8 @@ pub(crate) struct Met {
     pub thickness: f64,
     /// Whether the points are those of faces, and not nodes.
     pub faces: bool,
+    /// Whether springs keep them out, and not the kinematic law.
+    pub spring: bool,
     /// The length of an edge of that one, and the smaller of both (m).
     pub edge_of_body: f64,
     pub edge: f64,

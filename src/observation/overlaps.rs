@@ -5,9 +5,10 @@ mod tools;
 
 use crate::backend::device::bring_to_host;
 use crate::components::*;
+use crate::contact::triangles_of;
 use crate::error::Error;
 use crate::math::coordinates;
-use crate::mesh::{Locator, Mesh};
+use crate::mesh::{Locator, Mesh, OnTriangle, SurfaceFace};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -72,10 +73,12 @@ pub(super) fn check(world: &mut World) -> Result<(), Error> {
                 continue;
             }
             let (near_a, near_b) = (near(world, a, low, high), near(world, b, low, high));
-            let found = overlap(&near_a, &near_b, a, b).map(|found| (found, a, b));
-            let found = found.or_else(|| overlap(&near_b, &near_a, b, a).map(|found| (found, b, a)));
+            let kept = Kept::of(world, [a.body, b.body]);
+            let meet = matches!(kept, Kept::Contact { .. });
+            let found = overlap((&near_a, &near_b), (a, b), meet).map(|found| (found, a, b));
+            let found = found.or_else(|| overlap((&near_b, &near_a), (b, a), meet).map(|found| (found, b, a)));
             if let Some((found, one, other)) = found {
-                let message = message(&found, one.label, other.label, Kept::of(world, [one.body, other.body]));
+                let message = message(&found, one.label, other.label, kept);
                 let criterion = OVERLAP.to_string();
                 memory.warnings.push(Notice { criterion, part, time, step, value: 1.0, limit: 0.0, message });
             }
@@ -88,19 +91,24 @@ pub(super) fn check(world: &mut World) -> Result<(), Error> {
 
 /// What keeps two bodies apart.
 enum Kept {
-    Contact,
+    Contact {
+        /// Whether its points are those of faces, and not nodes.
+        faces: bool,
+        /// Whether its forces can be corrected again in a step.
+        sweeps: bool,
+    },
     Glue,
     Nothing,
 }
 
 impl Kept {
     fn of(world: &World, pair: [Entity; 2]) -> Self {
-        let meets = world.get::<Meets>(pair[0]).is_some_and(|meets| meets.0.iter().any(|met| met.body == pair[1]));
+        let meets = world.get::<Meets>(pair[0]).and_then(|meets| meets.0.iter().find(|met| met.body == pair[1]));
         let tied = |glue: &Glue| {
             glue.ties.iter().any(|tie| pair.iter().all(|body| tie.bodies.map(|of| glue.bodies[of]).contains(body)))
         };
-        if meets {
-            Self::Contact
+        if let Some(met) = meets {
+            Self::Contact { faces: met.faces, sweeps: !met.spring }
         } else if world.get_resource::<Glue>().is_some_and(tied) {
             Self::Glue
         } else {
@@ -115,9 +123,11 @@ fn message(found: &Overlap, one: &str, other: &str, kept: Kept) -> String {
     format!(
         "{one} and {other} overlap at ({at}) m: the surface of {one} at its node {node} is in element {element} of {other}; {}",
         match kept {
-            Kept::Contact =>
-                "contact has let them: finer faces, `points: Faces`, `sweeps` or slower motion keep them apart better"
-                    .into(),
+            Kept::Contact { faces, sweeps } => format!(
+                "contact has let them: finer faces, {}{}slower motion keep them apart better",
+                if faces { "" } else { "`points: Faces`, " },
+                if sweeps { "`sweeps` or " } else { "a larger `share` or " },
+            ),
             Kept::Glue =>
                 "they are glued or tied, at some of their points, and between these faces bend or are bent as they \
                  are: finer faces there overlap less"
@@ -177,24 +187,49 @@ fn near(world: &World, body: &Placed<'_>, low: DVec3, high: DVec3) -> NearBox {
     NearBox { mesh, elements, nodes, low, high }
 }
 
-/// Whether a point below the surface of one body lies in an element of the other. Where the elements near the box leave
-/// off counts as surface, too: what is in there is in the body all the same.
-fn overlap(one: &NearBox, other: &NearBox, of: &Placed<'_>, with: &Placed<'_>) -> Option<Overlap> {
+/// The surface of an element as contact has it: a face that is warped is two triangles there, and the element bulges
+/// out of one side of them.
+fn triangles((near, surface): (&NearBox, &[SurfaceFace]), body: &Placed<'_>, element: usize) -> Vec<[DVec3; 3]> {
+    let faces = surface.iter().filter(|face| face.element as usize == element);
+    let facets = faces.flat_map(SurfaceFace::facets).map(|facet| facet.map(|node| near.nodes[node as usize]));
+    facets.flat_map(triangles_of).map(|corners| corners.map(|node| body.points[node as usize])).collect()
+}
+
+/// Whether a place in an element is also behind the triangles of its surface, if it has some.
+fn behind(x: DVec3, triangles: &[[DVec3; 3]]) -> bool {
+    let away = |triangle: &[DVec3; 3]| OnTriangle::nearest(x, *triangle).at.distance_squared(x);
+    let nearest = triangles.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
+    nearest.is_none_or(|&[a, b, c]| (b - a).cross(c - a).dot(x - a) < 0.0)
+}
+
+/// Whether a point below the surface of one body lies in an element of the other; of bodies that meet, behind its
+/// surface as contact has it, too. Where the elements near the box leave off counts as surface, too: what is in there
+/// is in the body all the same.
+fn overlap((one, other): (&NearBox, &NearBox), (of, with): (&Placed<'_>, &Placed<'_>), meet: bool) -> Option<Overlap> {
     if one.elements.is_empty() || other.elements.is_empty() {
         return None;
     }
     let locator = Locator::new(&other.mesh);
     let points = &one.mesh.points;
+    let surface = if meet { other.mesh.surface() } else { Vec::new() };
     for face in one.mesh.surface() {
         let corners = one.mesh.element(face.element as usize);
         let middle = corners.iter().map(|&node| points[node as usize]).sum::<DVec3>() / corners.len() as f64;
         let nodes = face.nodes.map(|node| points[node as usize]);
         let count = face.corners().len();
-        let center = nodes[..count].iter().sum::<DVec3>() / count as f64;
+        let mut center = nodes[..count].iter().sum::<DVec3>() / count as f64;
+        if meet && count == 4 {
+            // of its own middle and that of the side which its two triangles share, the one that is less far out
+            let [a, b, c, d] = face.nodes.map(|node| one.nodes[node as usize]);
+            let from = usize::from(a.min(c) >= b.min(d));
+            let of_side = 0.5 * (nodes[from] + nodes[from + 2]);
+            center = if of_side.distance(middle) < center.distance(middle) { of_side } else { center };
+        }
         for (place, x) in nodes[..count].iter().chain([&center]).enumerate() {
             let below = x.lerp(middle, DEPTH);
             let inside = below.cmpge(one.low).all() && below.cmple(one.high).all();
-            if let Some(element) = inside.then(|| locator.holds(below)).flatten() {
+            let held = inside.then(|| locator.holds(below)).flatten();
+            if let Some(element) = held.filter(|&held| behind(below, &triangles((other, &surface), with, held))) {
                 let node = one.nodes[face.nodes[place % count] as usize];
                 let node = of.authoring.node_ids.of(node as usize);
                 let element = with.authoring.element_ids.of(other.elements[element]);

@@ -90,6 +90,23 @@ fn what_sucks_or_takes_twice_is_told() {
 }
 
 #[test]
+fn a_mouth_that_comes_nowhere_near_what_it_sucks_is_told() {
+    let tube =
+        |rest: &str| format!("(shape: Tube(length: 0.2, inner: 0.02, outer: 0.03), at: (0.05, 0.05, 0.5){rest})");
+    let sucks = "integration: (step: 1e-5), suction: [(tool: \"rod\", pressure: 100, reach: 0.02)],";
+    let said = told(&tube(""), "", sucks);
+    let expected =
+        "3: warning: as `b` is at the start, the mouth of `rod` comes no nearer to it than 4.000e-1 m: it sucks";
+    assert!(said.contains(expected) && said.contains("`reach` is 2.000e-2 m"), "{said}");
+    // it comes for a moment, or a program or forces may move it
+    let comes = |curve: &str| format!(", moves: [(displacement: (0, 0, -0.39), curve: {curve})]");
+    assert_eq!(told(&tube(&comes("Table([(0.04, 0), (0.05, 1), (0.06, 0)])")), "", sucks), "");
+    assert_eq!(told(&tube(&comes("Input(name: \"way\", rate: 1)")), "", sucks), "");
+    let free = tube(", free: (mass: 1)");
+    assert!(!told(&free, TOUCH, sucks).contains("it sucks nothing"));
+}
+
+#[test]
 fn what_copies_would_share_is_refused() {
     let of = |entry: &str| {
         let folder = tempfile::tempdir().unwrap();
