@@ -189,7 +189,7 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
         if !(length(found.at) <= max(reach, depth)) {
             continue;
         }
-        var facing = outside(triangle, point, corners, found, 1e-3 * edge_with(triangle));
+        var facing = outside(triangle, point, corners, found, edge_with(triangle));
         if !facing.there || !(facing.gap >= -depth && facing.gap <= reach) {
             continue;
         }

@@ -121,8 +121,18 @@ fn is_closer(other: u32, triangle: u32, point: vec3<f32>, distance: f32) -> bool
     return length(nearest(corners_of(other, point)).at) < (1.0 - 1e-6) * distance - surface.rounding;
 }
 
-// How far a point is outside of a triangle that it is on if it is so near (m).
-fn outside(triangle: u32, point: vec3<f32>, corners: array<vec3<f32>, 3>, found: OnTriangle, on_it: f32) -> Facing {
+// Whether a triangle is a wall of a corner that rises before another, with such a normal through a place, there.
+fn rises_beside(other: u32, point: vec3<f32>, at: vec3<f32>, normal: vec3<f32>, edge: f32) -> bool {
+    if other == NONE {
+        return false;
+    }
+    let corners = corners_of(other, point);
+    let highest = max(dot(normal, corners[0] - at), max(dot(normal, corners[1] - at), dot(normal, corners[2] - at)));
+    return highest > ALIKE * edge && dot(normal_of(corners), normal) < CORNER;
+}
+
+// How far a point is outside of a triangle that it is on if it is nearer than a thousandth of an edge (m).
+fn outside(triangle: u32, point: vec3<f32>, corners: array<vec3<f32>, 3>, found: OnTriangle, edge: f32) -> Facing {
     var facing: Facing;
     facing.there = false;
     let normal = normal_of(corners);
@@ -138,16 +148,18 @@ fn outside(triangle: u32, point: vec3<f32>, corners: array<vec3<f32>, 3>, found:
     facing.gap = -dot(found.at, normal);
     facing.part = 0u;
     facing.there = true;
-    if found.part == 0u || distance <= on_it {
+    if found.part == 0u || distance <= 1e-3 * edge {
         return facing;
     }
     var around = normal;
+    var is_corner = false;
     if found.part < 4u {
         let other = surface_faces[8u * triangle + 2u + found.part];
         if is_closer(other, triangle, point, distance) {
             facing.there = false;
             return facing;
         }
+        is_corner = rises_beside(other, point, found.at, normal, edge);
         if other != NONE {
             around += normal_of(corners_of(other, point));
         }
@@ -160,10 +172,16 @@ fn outside(triangle: u32, point: vec3<f32>, corners: array<vec3<f32>, 3>, found:
                 facing.there = false;
                 return facing;
             }
+            is_corner = is_corner
+                || rises_beside(surface_faces[all_around + place], point, found.at, normal, edge);
         }
         around = normal_of_node(node);
     }
     let outwards = dot(-found.at, around) >= 0.0;
+    // of a corner that it has sunk into each wall bears it, as above it
+    if is_corner && !outwards {
+        return facing;
+    }
     facing.normal = select(found.at, -found.at, outwards) / distance;
     facing.gap = select(-distance, distance, outwards);
     facing.part = select(0u, found.part, outwards);

@@ -43,13 +43,7 @@ fn is_of_point(point: u32, triangle: u32) -> bool {
 // Whether a second face, that is turned otherwise, rises before the first: it is a wall of a corner. A point of a face
 // is never on an edge, and a wall that falls off beside it would push it along the face.
 fn rises(first: Facing, second: Facing, point: vec3<f32>, edge: f32) -> bool {
-    var corners = corners_of(second.triangle, point);
-    for (var corner = 0u; corner < 3u; corner++) {
-        if dot(first.normal, corners[corner] - first.at) > ALIKE * edge {
-            return true;
-        }
-    }
-    return false;
+    return rises_beside(second.triangle, point, first.at, first.normal, edge);
 }
 
 // What the corners of a quadrilateral have of a place on it, by bilinear weights.

@@ -28,9 +28,11 @@ fn is_of_point(point: u32, triangle: u32) -> bool {
     return has_corner(triangle, point);
 }
 
-// Whether a second face, that is turned otherwise, rises before the first: it is a wall of a corner.
+// Whether a second face, that is turned otherwise, rises before the first: it is a wall of a corner. Where a node has
+// sunk into that, it is nearest at the foot of the wall.
 fn rises(first: Facing, second: Facing, point: vec3<f32>, edge: f32) -> bool {
-    return dot(first.normal, second.at - first.at) > 0.0;
+    return dot(first.normal, second.at - first.at) > 0.0
+        || rises_beside(second.triangle, point, first.at, first.normal, edge);
 }
 
 fn parts_of(point: u32, facing: Facing, at: vec3<f32>) -> Parts {

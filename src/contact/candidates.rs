@@ -143,6 +143,11 @@ impl<'a, 'k> Candidates<'a, 'k> {
         }
         match off.dot(self.surfaces.normal_of_part(self.now, triangle, part)) {
             out if out >= 0.0 => facing(part, off / distance, distance),
+            // of a corner that it has sunk into each wall bears it, as above it: the way to where both meet would swing
+            // as far as it goes aside
+            _ if self.surfaces.rises_beside(self.now, (triangle, part), (at, normal), edge) => {
+                facing(0, normal, off.dot(normal))
+            }
             _ => facing(0, -off / distance, -distance),
         }
     }

@@ -203,13 +203,29 @@ impl Surfaces {
     /// corner in the first's plane or one that rounding lifts a little, would push it along the face. Where the first
     /// is behind the second, the second falls off beyond a rim, and bent faces lift its edge a little.
     fn is_corner(&self, places: &[DVec3], point: &Point, [first, second]: [&Facing; 2], edge: f64) -> bool {
-        let height = |at: DVec3| first.normal.dot(at - first.at);
-        let rises = || match point.triangle {
-            None => height(second.at) > 0.0,
-            Some(_) => self.corners(places, second.triangle).into_iter().any(|corner| height(corner) > ALIKE * edge),
-        };
+        let is_above = point.triangle.is_none() && first.normal.dot(second.at - first.at) > 0.0;
         let is_before = second.normal.dot(first.at - second.at) > -ALIKE * edge;
+        let rises = || is_above || self.rises(places, second.triangle, (first.at, first.normal), edge);
         first.normal.dot(second.normal) < CORNER && is_before && rises()
+    }
+
+    /// Whether a triangle goes on farther out than a plane through a place with such a normal, by more than what counts
+    /// for nothing of an `edge` (m).
+    fn rises(&self, places: &[DVec3], triangle: u32, (at, normal): (DVec3, DVec3), edge: f64) -> bool {
+        self.corners(places, triangle).into_iter().any(|corner| normal.dot(corner - at) > ALIKE * edge)
+    }
+
+    /// Whether a wall rises before a triangle at a side or corner of it, with such a normal through a place there.
+    pub(super) fn rises_beside(
+        &self,
+        now: Placed<'_>,
+        (triangle, part): (u32, usize),
+        (at, normal): (DVec3, DVec3),
+        edge: f64,
+    ) -> bool {
+        self.around_part(triangle, part).any(|other| {
+            self.normal_now(now, other).dot(normal) < CORNER && self.rises(now.places, other, (at, normal), edge)
+        })
     }
 
     /// By how much the unit normal of a triangle with sides a, b and area A changes at most, as long as no two nodes
