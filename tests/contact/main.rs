@@ -32,6 +32,7 @@ mod glued_grasps;
 mod grasp;
 mod grasped_surfaces;
 mod grip_strength;
+mod grooves;
 mod held_by_tools;
 mod implicit;
 mod implicit_books;
