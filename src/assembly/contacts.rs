@@ -143,7 +143,7 @@ pub(super) fn may_slip(tool: &str, body: &str, (geometry, edge): (&Geometry, f64
         format!("the tool `{tool}` may slip between nodes: it is hardly thicker than the faces that it meets");
     diagnostics
         .warn_at(format!("tools.\"{tool}\"").as_str(), message)
-        .note(format!("its radius, or half of its thickness, is {size:.3e} m, and faces of `{body}` have edges of {edge:.3e} m"))
+        .note(format!("half of its thickness is {size:.3e} m, and faces of `{body}` have edges of {edge:.3e} m"))
         .note(format!(
             "give `{body}` edges of {:.1e} m or less where it is touched (more cells, `refine`), or take a thicker tool; \
              `thin: true` in the contact says that this is meant",

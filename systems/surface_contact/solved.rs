@@ -125,8 +125,8 @@ pub(super) fn pair<T: Scalar>(
         let at_end = |facing: &Facing| contacts.faced_at_end(number, facing, true, goes_on);
         let both = [&faced.first, &faced.second].into_iter().flatten().map(at_end);
         let mut both: SmallVec<[Facing; 2]> = both.collect();
-        // of walls that are as near rounding chooses which is the first, and what is kept of one would be taken for what
-        // is kept of the other; both may end outside of the same
+        // of walls that are as near rounding chooses which is the first, and what is kept of one would be taken for
+        // what is kept of the other; both may end outside of the same
         both.sort_by_key(|facing| facing.triangle);
         both.dedup_by_key(|facing| facing.triangle);
         for (facing, first) in both.iter().zip([true, false]) {

@@ -45,8 +45,8 @@ fn write_groove(path: &Path) {
     std::fs::write(path, text).unwrap();
 }
 
-/// A square prism of 6 mm that lies in the groove edge down, tilted along it by an angle (°), with friction .3: it slides
-/// from tan⁻¹(√2 · .3) = 23° on.
+/// A square prism of 6 mm that lies in the groove edge down, tilted along it by an angle (°), with friction .3: it
+/// slides from tan⁻¹(√2 · .3) = 23° on.
 fn lies(tilt: f64, (solver, law): (&str, &str)) -> String {
     let (sine, cosine) = tilt.to_radians().sin_cos();
     format!(
