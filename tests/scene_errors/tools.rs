@@ -123,8 +123,8 @@ fn what_is_wrong_with_a_tool_is_told_with_what_is_allowed() {
         (
             "(shape: Capsule(length: 0.2, radius: 0.01), at: (0.05, 0.05, 0.11))",
             TOUCH,
-            "4: warning: the tool `rod` may slip between nodes: it is hardly thicker than the faces that it meets | its radius \
-             is 1.000e-2 m, and faces of `b` have edges of 2.845e-2 m | give `b` edges of 5.0e-3 m or less where it is touched \
+            "4: warning: the tool `rod` may slip between nodes: it is hardly thicker than the faces that it meets | half of its \
+             thickness is 1.000e-2 m, and faces of `b` have edges of 2.845e-2 m | give `b` edges of 5.0e-3 m or less where it is touched \
              (more cells, `refine`), or take a thicker tool; `thin: true` in the contact says that this is meant",
         ),
         (
