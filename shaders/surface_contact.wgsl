@@ -130,14 +130,6 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing, reach: 
     return faced;
 }
 
-// What each corner of a triangle has of a place in its plane that they are counted from.
-fn weights_in_plane(off: array<vec3<f32>, 3>) -> vec3<f32> {
-    let across = cross(off[1] - off[0], off[2] - off[0]);
-    let of_b = dot(cross(off[2], off[0]), across) / dot(across, across);
-    let of_c = dot(cross(off[0], off[1]), across) / dot(across, across);
-    return vec3<f32>(1.0 - of_b - of_c, of_b, of_c);
-}
-
 // Whether two faces are walls of a corner that the point is in, and the first is not behind the second.
 fn is_corner(first: Facing, second: Facing, point: vec3<f32>) -> bool {
     let edge = min(edge_with(first.triangle), edge_with(second.triangle));
@@ -162,6 +154,8 @@ struct Faced {
     second: Facing,
 }
 
+// The face that is most in a point's way, and of those that are walls of a corner with it the one that is: several
+// triangles of each wall are as near to what is behind a node of the line in which walls meet.
 fn faced(number: u32, point: vec3<f32>) -> Faced {
     let hold = lists_hold();
     let starts = surface.list + number;
@@ -174,46 +168,50 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
     both.second.there = false;
     var own = vec3<f32>(0.0);
     var own_known = false;
-    for (var place = begin; place < end; place++) {
-        var triangle = place;
-        if hold {
-            triangle = surface_lists[all + place];
-        } else if !may_meet(number, triangle) {
-            continue;
-        }
-        let corners = corners_of(triangle, point);
-        let found = nearest(corners);
-        let reach = reach_of(meeting_with(triangle), largest);
-        let depth = bitcast<f32>(surface_faces[8u * triangle + 7u]);
-        // no number is near nothing
-        if !(length(found.at) <= max(reach, depth)) {
-            continue;
-        }
-        var facing = outside(triangle, point, corners, found, edge_with(triangle));
-        if !facing.there || !(facing.gap >= -depth && facing.gap <= reach) {
-            continue;
-        }
-        if !own_known {
-            own = normal_of_point(number);
-            own_known = true;
-        }
-        // of its own body it may be a face beside its own
-        if surface_faces[8u * triangle + 6u] != surface.body || dot(facing.normal, own) < TURNED_AWAY {
-            facing = at_rim(number, point, own, facing, reach);
-        }
-        facing.turned = dot(facing.normal, own);
-        if !facing.there || facing.turned >= TURNED_AWAY {
-            continue;
-        }
-        if !both.first.there || is_more_in_way(facing, both.first) {
-            if both.first.there && is_corner(facing, both.first, point) {
-                both.second = both.first;
+    var others = 0u;
+    // the walls are looked for once the first is known, of those that face more than one
+    for (var turn = 0u; turn < 2u && (turn == 0u || others > 0u); turn++) {
+        for (var place = begin; place < end; place++) {
+            var triangle = place;
+            if hold {
+                triangle = surface_lists[all + place];
+            } else if !may_meet(number, triangle) {
+                continue;
             }
-            both.first = facing;
-        } else if !both.second.there || is_more_in_way(facing, both.second) {
-            both.second = facing;
+            let corners = corners_of(triangle, point);
+            let found = nearest(corners);
+            let reach = reach_of(meeting_with(triangle), largest);
+            let depth = bitcast<f32>(surface_faces[8u * triangle + 7u]);
+            // no number is near nothing
+            if !(length(found.at) <= max(reach, depth)) {
+                continue;
+            }
+            var facing = outside(triangle, point, corners, found, edge_with(triangle));
+            if !facing.there || !(facing.gap >= -depth && facing.gap <= reach) {
+                continue;
+            }
+            if !own_known {
+                own = normal_of_point(number);
+                own_known = true;
+            }
+            // of its own body it may be a face beside its own
+            if surface_faces[8u * triangle + 6u] != surface.body || dot(facing.normal, own) < TURNED_AWAY {
+                facing = at_rim(number, point, own, facing, reach);
+            }
+            facing.turned = dot(facing.normal, own);
+            if !facing.there || facing.turned >= TURNED_AWAY {
+                continue;
+            }
+            if turn == 0u {
+                others += u32(both.first.there);
+                if !both.first.there || is_more_in_way(facing, both.first) {
+                    both.first = facing;
+                }
+            } else if is_corner(both.first, facing, point)
+                && (!both.second.there || is_more_in_way(facing, both.second)) {
+                both.second = facing;
+            }
         }
-        both.second.there = both.second.there && is_corner(both.first, both.second, point);
     }
     if both.first.there {
         both.first = at_end(number, point, both.first);
@@ -294,6 +292,50 @@ fn begin_if_met(contact: u32, meets: u32, parts: Parts, of_point: Begun, state: 
     begin(contact, meets, parts, begun);
 }
 
+// How a point is to something that it faces: how far outside now, and how far outwards it went in the last step (m).
+struct Outside {
+    now: f32,
+    went: f32,
+}
+
+fn sight(point: u32, place: vec3<f32>, facing: Facing) -> Outside {
+    let parts = parts_of(point, facing, place);
+    let outside = gap_of(facing, parts, place) - meeting_number(meeting_with(facing.triangle), 3u);
+    return Outside(outside, dot(facing.normal, goes(parts, LAST)));
+}
+
+// How much deeper (m) a point is than motion tells that was so deep before and so far outside (m), of one face that it
+// sees, or of two: twin of `allowed` in systems/surface_contact/gather.rs.
+fn deeper_than_expected(
+    did: f32, was_in_corner: bool, noted: vec2<f32>, first: Outside, second: Outside, sees_two: bool) -> f32 {
+    let lowest = min(first.now, second.now);
+    if did == FREE {
+        return lowest;
+    }
+    if was_in_corner || did == FACES {
+        return lowest - (noted.y - 2.0 * largest_step());
+    }
+    let of_first = first.now - (noted.y + first.went);
+    let of_second = second.now - (noted.y + second.went);
+    if !sees_two {
+        return of_first;
+    }
+    if abs(of_first) <= abs(of_second) {
+        return min(of_first, second.now - second.went - noted.x);
+    }
+    return min(of_second, first.now - first.went - noted.x);
+}
+
+// The contact of a point with something that it faces, if it meets that.
+fn meet(contact: u32, point: u32, place: vec3<f32>, facing: Facing, outside: Outside, allowed: f32, slip: vec3<f32>,
+    did: f32) {
+    let meets = meeting_with(facing.triangle);
+    let edge = meeting_number(meets, EDGE);
+    let gap = max(outside.now - allowed, -OUT * edge);
+    let begun = Begun(facing.normal, gap, outside.now, allowed, SHARES * edge, 0.0, slip);
+    begin_if_met(contact, meets, parts_of(point, facing, place), begun, did);
+}
+
 @compute @workgroup_size(64)
 fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = row(id, groups);
@@ -306,44 +348,34 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     let at = touch_of(point);
     let slip = vec3<f32>(surface_touch[at], surface_touch[at + 1u], surface_touch[at + 2u]);
     let before = surface_touch[at + 3u];
-    let state = surface_touch[at + 4u];
-    let gap_before = surface_touch[at + 5u];
+    let was_in_corner = surface_touch[at + 4u] >= IN_CORNER;
+    let did = surface_touch[at + 4u] - select(0.0, IN_CORNER, was_in_corner);
     begin_none(2u * point);
     begin_none(2u * point + 1u);
     var allowed = 0.0;
-    var outside_by = 0.0;
+    var lowest = 0.0;
     if both.first.there {
-        let meets = meeting_with(both.first.triangle);
-        let edge = meeting_number(meets, EDGE);
-        let settling = settling_of_step(meets);
-        let parts = parts_of(point, both.first, place);
-        outside_by = gap_of(both.first, parts, place) - meeting_number(meets, 3u);
-        var expected = 0.0;
-        if state == FACES {
-            expected = gap_before - 2.0 * largest_step();
-        } else if state != FREE {
-            // as far as it went, and not as was foreseen: tools may have held what it touches
-            expected = gap_before + dot(both.first.normal, goes(parts, LAST));
+        let first = sight(point, place, both.first);
+        lowest = first.now;
+        var second = first;
+        if both.second.there {
+            second = sight(point, place, both.second);
+            lowest = min(lowest, second.now);
         }
-        allowed = max(min(before + min(outside_by - expected, 0.0) + settling, 0.0), min(outside_by, 0.0));
-        let gap = max(outside_by - allowed, -OUT * edge);
-        let begun = Begun(both.first.normal, gap, outside_by, allowed, SHARES * edge, 0.0, slip);
-        begin_if_met(2u * point, meets, parts, begun, state);
-    }
-    if both.second.there {
-        // of another face nothing is known of how the point got there
-        let meets = meeting_with(both.second.triangle);
-        let settling = settling_of_step(meets);
-        let within = SHARES * meeting_number(meets, EDGE);
-        let parts = parts_of(point, both.second, place);
-        let second = gap_of(both.second, parts, place) - meeting_number(meets, 3u);
-        let begun = Begun(both.second.normal, max(second, -settling), second, 0.0, within, 0.0, vec3<f32>(0.0));
-        begin_if_met(2u * point + 1u, meets, parts, begun, state);
+        let settling = settling_of_step(meeting_with(both.first.triangle));
+        let noted = vec2<f32>(before, surface_touch[at + 5u]);
+        let deeper = deeper_than_expected(did, was_in_corner, noted, first, second, both.second.there);
+        allowed = max(min(before + min(deeper, 0.0) + settling, 0.0), min(lowest, 0.0));
+        meet(2u * point, point, place, both.first, first, allowed, slip, did);
+        if both.second.there {
+            // of how it has slipped one face knows
+            meet(2u * point + 1u, point, place, both.second, second, allowed, vec3<f32>(0.0), did);
+        }
     }
     for (var k = 0u; k < 3u; k++) {
         surface_touch[at + k] = 0.0;
     }
     surface_touch[at + 3u] = allowed;
-    surface_touch[at + 4u] = select(FREE, FACES, both.first.there);
-    surface_touch[at + 5u] = select(0.0, outside_by, both.first.there);
+    surface_touch[at + 4u] = select(FREE, FACES, both.first.there) + select(0.0, IN_CORNER, both.second.there);
+    surface_touch[at + 5u] = lowest;
 }

@@ -19,7 +19,8 @@ fn note(contact: u32, at: u32, is_first: bool) {
         surface_touch[at] = slip.x;
         surface_touch[at + 1u] = slip.y;
         surface_touch[at + 2u] = slip.z;
-        surface_touch[at + 4u] = select(STICKS, SLIDES, slides);
+        let in_corner = select(0.0, IN_CORNER, surface_touch[at + 4u] >= IN_CORNER);
+        surface_touch[at + 4u] = in_corner + select(STICKS, SLIDES, slides);
     }
     if surface.relaxed == 0u && slides {
         surface_touch[at + 6u] += length(along_surface(after, normal));

@@ -4,25 +4,6 @@
 // plane if it went straight for the rim.
 const LESS: f32 = 0.8;
 
-// How many triangles are around the side or corner that a point is before, and each of them, ascending.
-fn count_around(facing: Facing) -> u32 {
-    if facing.part < 4u {
-        return 2u;
-    }
-    let starts = surface.around + surface_faces[8u * facing.triangle + facing.part - 4u];
-    return surface_faces[starts + 1u] - surface_faces[starts];
-}
-
-fn around_part(facing: Facing, number: u32) -> u32 {
-    if facing.part < 4u {
-        // where there is none beside, it is the last
-        let other = surface_faces[8u * facing.triangle + 2u + facing.part];
-        return select(max(facing.triangle, other), min(facing.triangle, other), number == 0u);
-    }
-    let starts = surface.around + surface_faces[8u * facing.triangle + facing.part - 4u];
-    return surface_faces[surface.around + surface.nodes + 1u + surface_faces[starts] + number];
-}
-
 // Whether all that is around a side or a corner is behind a plane through it, but for a twentieth.
 fn are_behind(facing: Facing, point: vec3<f32>, normal: vec3<f32>) -> bool {
     let count = count_around(facing);

@@ -113,6 +113,25 @@ fn normal_of_node(node: u32) -> vec3<f32> {
     return select(vec3<f32>(0.0), sum / max(size, 1e-37), size > 1e-30);
 }
 
+// How many triangles are around the side or corner that a point is before, and each of them, ascending.
+fn count_around(facing: Facing) -> u32 {
+    if facing.part < 4u {
+        return 2u;
+    }
+    let starts = surface.around + surface_faces[8u * facing.triangle + facing.part - 4u];
+    return surface_faces[starts + 1u] - surface_faces[starts];
+}
+
+fn around_part(facing: Facing, number: u32) -> u32 {
+    if facing.part < 4u {
+        // where there is none beside, it is the last
+        let other = surface_faces[8u * facing.triangle + 2u + facing.part];
+        return select(max(facing.triangle, other), min(facing.triangle, other), number == 0u);
+    }
+    let starts = surface.around + surface_faces[8u * facing.triangle + facing.part - 4u];
+    return surface_faces[surface.around + surface.nodes + 1u + surface_faces[starts] + number];
+}
+
 // Whether another triangle is nearer to the point than so far (m).
 fn is_closer(other: u32, triangle: u32, point: vec3<f32>, distance: f32) -> bool {
     if other == triangle || other == NONE {
@@ -151,39 +170,47 @@ fn outside(triangle: u32, point: vec3<f32>, corners: array<vec3<f32>, 3>, found:
     if found.part == 0u || distance <= 1e-3 * edge {
         return facing;
     }
+    facing.part = found.part;
+    let count = count_around(facing);
     var around = normal;
-    var is_corner = false;
-    if found.part < 4u {
-        let other = surface_faces[8u * triangle + 2u + found.part];
+    for (var number = 0u; number < count; number++) {
+        let other = around_part(facing, number);
         if is_closer(other, triangle, point, distance) {
             facing.there = false;
             return facing;
         }
-        is_corner = rises_beside(other, point, found.at, normal, edge);
-        if other != NONE {
+        if other != NONE && other != triangle {
             around += normal_of(corners_of(other, point));
         }
-    } else {
-        let node = surface_faces[8u * triangle + found.part - 4u];
-        let starts = surface.around + node;
-        let all_around = surface.around + surface.nodes + 1u;
-        for (var place = surface_faces[starts]; place < surface_faces[starts + 1u]; place++) {
-            if is_closer(surface_faces[all_around + place], triangle, point, distance) {
-                facing.there = false;
-                return facing;
-            }
-            is_corner = is_corner
-                || rises_beside(surface_faces[all_around + place], point, found.at, normal, edge);
-        }
-        around = normal_of_node(node);
     }
-    let outwards = dot(-found.at, around) >= 0.0;
-    // of a corner that it has sunk into each wall bears it, as above it
-    if is_corner && !outwards {
+    if found.part > 3u {
+        around = normal_of_node(surface_faces[8u * triangle + found.part - 4u]);
+    }
+    if dot(-found.at, around) >= 0.0 {
+        facing.normal = -found.at / distance;
+        facing.gap = distance;
         return facing;
     }
-    facing.normal = select(found.at, -found.at, outwards) / distance;
-    facing.gap = select(-distance, distance, outwards);
-    facing.part = select(0u, found.part, outwards);
+    // of a corner that it has sunk into each wall bears it, as above it, along one line
+    for (var number = 0u; number < count; number++) {
+        if rises_beside(around_part(facing, number), point, found.at, normal, edge) {
+            facing.part = 0u;
+            let below = -facing.gap * normal;
+            facing.weights = weights_in_plane(array<vec3<f32>, 3>(
+                corners[0] - below, corners[1] - below, corners[2] - below));
+            return facing;
+        }
+    }
+    facing.normal = found.at / distance;
+    facing.gap = -distance;
+    facing.part = 0u;
     return facing;
+}
+
+// What each corner of a triangle has of a place in its plane that they are counted from.
+fn weights_in_plane(off: array<vec3<f32>, 3>) -> vec3<f32> {
+    let across = cross(off[1] - off[0], off[2] - off[0]);
+    let of_b = dot(cross(off[2], off[0]), across) / dot(across, across);
+    let of_c = dot(cross(off[0], off[1]), across) / dot(across, across);
+    return vec3<f32>(1.0 - of_b - of_c, of_b, of_c);
 }

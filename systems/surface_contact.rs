@@ -12,6 +12,7 @@ mod look;
 mod meet;
 mod memory;
 mod motion;
+mod pairs;
 mod solved;
 mod survey;
 mod turns;
@@ -185,7 +186,7 @@ struct Surface {
     gathered: gather::Gathered,
     /// What points face in an implicit step, in the order of points, and what may touch.
     faced_by_task: Vec<Vec<(u32, Faced)>>,
-    pairs: Vec<solved::Pair>,
+    pairs: Vec<pairs::Pair>,
     /// The slopes of each contact of an implicit step.
     solved: Vec<solved::Slopes>,
     figures: Figures,
@@ -354,7 +355,7 @@ fn step<T: Scalar>(
             contacts.surface.pairs.clear();
             let Some((near, mut bodies)) = motion::search::<T>(contacts, of, bodies)? else { return Ok(()) };
             if let Some(reach) = near {
-                solved::pair(contacts, of, reach, &bodies);
+                pairs::pair(contacts, of, reach, &bodies);
             }
             if springs.forces == SpringForces::Stepped {
                 solved::press(contacts, (of.0, springs, of.1), &mut bodies);

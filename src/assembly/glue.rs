@@ -65,7 +65,7 @@ fn begin_deformed(assembly: &Assembly<'_>) -> bool {
 }
 
 /// Where the nodes of a body are at the start (m).
-fn points_of<'a>(body: &'a BodyParts, deformed: bool, world: &World) -> Cow<'a, [DVec3]> {
+pub(super) fn points_of<'a>(body: &'a BodyParts, deformed: bool, world: &World) -> Cow<'a, [DVec3]> {
     let rest: &[DVec3] = &body.placed.mesh.points;
     match world.get::<Displacement>(body.entity).filter(|_| deformed) {
         Some(u) => rest.iter().zip(&body.node_rows).map(|(at, &row)| *at + u.vector(row as usize)).collect(),

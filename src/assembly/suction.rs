@@ -2,6 +2,7 @@
 
 use super::body_columns::stiffnesses;
 use super::contacts::{bounds, edge, motion, reference, way};
+use super::glue::points_of;
 use super::loads::corners_of;
 use super::{Assembly, BodyParts};
 use crate::components::*;
@@ -115,11 +116,7 @@ fn stays_away(
     if motion.is_led() || tool.free.is_some() {
         return;
     }
-    let (Some(rest), Some(u)) = (world.get::<RestPosition>(body.entity), world.get::<Displacement>(body.entity)) else {
-        return;
-    };
-    let place = |row: u32| rest.0[row as usize] + u.vector(row as usize);
-    let points: Vec<DVec3> = body.node_rows.iter().map(|&row| place(row)).collect();
+    let points = points_of(body, true, world);
     let (low, high) = bounds(&points);
     // what counts are middles of faces, which are less than an edge or two from a node
     let near = suction.reach + FACE * edge(body);

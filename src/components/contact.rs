@@ -10,15 +10,60 @@ columns! {
     /// the body may meet others or itself.
     ContactForce(Reals) = "contact_force", State of Touch, Nodes(3);
     /// What each node carries on as a point of a surface, [`MEETING_NUMBERS`] a node: how far it has slipped
-    /// elastically (m, a vector); how deep it may be inside (m, 0 or negative); 0 where it faced nothing in the last
-    /// step, 1 where it faced something, 2 where it stuck to it, 3 where it slid; how far it was outside of that before
-    /// the step, after it in implicit steps (m); since the start the length it has slid (m), and what contact has taken
-    /// of the node's energy (J), also where it is the faces around it that are touched. Exists with [`ContactForce`].
+    /// elastically (m, a vector); how deep it may be inside (m, 0 or negative); a [`PointState`] of the last step; how
+    /// far it was outside of what it faced before the step, after it in implicit steps, of two the less (m); since the
+    /// start the length it has slid (m), and what contact has taken of the node's energy (J), also where it is the faces
+    /// around it that are touched. Exists with [`ContactForce`].
     SurfaceTouch(Reals) = "surface_touch", State of Touch, Nodes(MEETING_NUMBERS);
     /// The same of each point of faces, but that energy is counted at nodes alone: those of a facet after another, as
     /// the body's surface has them, or where [`FacePlaces`] says, and as [`face_points`](crate::contact::face_points)
     /// orders them. Exists where points of the body's faces meet others.
     FaceTouch(Reals) = "face_touch", State of Touch, Other;
+}
+
+/// What a point did in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Did {
+    /// It faced nothing.
+    #[default]
+    Free,
+    /// It faced something.
+    Faces,
+    /// It stuck to it.
+    Sticks,
+    /// It slid.
+    Slides,
+}
+
+/// What a point did in a step, and whether it faced two walls of a corner: a number in [`SurfaceTouch`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PointState {
+    /// What it did.
+    pub did: Did,
+    /// Whether there were two walls.
+    pub in_corner: bool,
+}
+
+impl PointState {
+    /// So much is added where there were two walls.
+    pub const IN_CORNER: u32 = 4;
+
+    /// What a number tells.
+    pub fn of(number: f64) -> Self {
+        let number = number as u32;
+        let did = [Did::Free, Did::Faces, Did::Sticks, Did::Slides][(number % Self::IN_CORNER) as usize];
+        Self { did, in_corner: number >= Self::IN_CORNER }
+    }
+
+    /// Its number.
+    pub fn number(self) -> f64 {
+        f64::from(self.did as u32 + Self::IN_CORNER * u32::from(self.in_corner))
+    }
+
+    /// Whether the point touched something.
+    pub fn touched(self) -> bool {
+        self.did >= Did::Sticks
+    }
 }
 
 /// The bodies that contact keeps away from this one.

@@ -67,8 +67,8 @@ pub use column_layout::{Increments, Rows, Subject};
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
 #[doc(hidden)]
 pub use contact::{
-    ContactForce, ContactGain, ContactSpring, FacePlaces, FaceTouch, MEETING_NUMBERS, SurfaceRows, SurfaceSleep,
-    SurfaceTouch,
+    ContactForce, ContactGain, ContactSpring, Did, FacePlaces, FaceTouch, MEETING_NUMBERS, PointState, SurfaceRows,
+    SurfaceSleep, SurfaceTouch,
 };
 pub(crate) use contact::{Meets, Met};
 #[doc(hidden)]

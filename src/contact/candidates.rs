@@ -144,9 +144,12 @@ impl<'a, 'k> Candidates<'a, 'k> {
         match off.dot(self.surfaces.normal_of_part(self.now, triangle, part)) {
             out if out >= 0.0 => facing(part, off / distance, distance),
             // of a corner that it has sunk into each wall bears it, as above it: the way to where both meet would swing
-            // as far as it goes aside
+            // as far as it goes aside; in the wall's plane, so that forces act along one line
             _ if self.surfaces.rises_beside(self.now, (triangle, part), (at, normal), edge) => {
-                facing(0, normal, off.dot(normal))
+                let gap = off.dot(normal);
+                let corners = self.surfaces.corners(self.now.places, triangle);
+                let weights = OnTriangle::weights_in_plane(self.at - gap * normal, corners);
+                Some(Facing { triangle, weights, at, normal, gap, part: 0 })
             }
             _ => facing(0, -off / distance, -distance),
         }

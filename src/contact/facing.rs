@@ -8,6 +8,7 @@ use super::surfaces::{OF_ANGLES, Placed, Point, Surfaces};
 use crate::mesh::OnTriangle;
 use glam::DVec3;
 use glance::{Glance, Only};
+use smallvec::SmallVec;
 use std::f64::consts::FRAC_PI_2;
 
 /// Surfaces face one another where the cosine between their normals is below this.
@@ -25,7 +26,8 @@ const CORNER: f64 = 0.866;
 pub struct Facing {
     /// Its number.
     pub triangle: u32,
-    /// What each of its corners has of the nearest place.
+    /// What each of its corners has of the place that bears the point: of the nearest one, or of the one below it in
+    /// the plane of a wall or a flank, also beyond the sides.
     pub weights: [f64; 3],
     /// The nearest place (m).
     pub at: DVec3,
@@ -139,7 +141,8 @@ impl Surfaces {
         let mut candidates = Candidates::new((self, now), point.place(now.places), listed, nearest);
         let (triangles, reach, edge) = (listed.triangles, &reach, &edge);
         let (own, waiting) = (None, None);
-        let mut way = Way { surfaces: self, now, point, triangles, reach, edge, own, waiting, faced: [None; 2] };
+        let faced_so_far = SmallVec::new();
+        let mut way = Way { surfaces: self, now, point, triangles, reach, edge, own, waiting, faced: faced_so_far };
         let mut wakes = f64::INFINITY;
         let mut look = |candidates: &Candidates<'_, '_>, number: usize, triangle: u32| {
             let &(found, distance) = candidates.nearest(number);
@@ -281,9 +284,8 @@ struct Way<'a, R, E> {
     own: Option<DVec3>,
     /// The first that was seen, before anything is asked of it: most points see no other.
     waiting: Option<Facing>,
-    /// The one that is most in its way, and a wall of a corner with the first, each with the cosine between its normal
-    /// and the point's own.
-    faced: [Option<(Facing, f64)>; 2],
+    /// Those that the point faces, each with the cosine between its normal and the point's own.
+    faced: SmallVec<[(Facing, f64); 4]>,
 }
 
 impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
@@ -293,12 +295,13 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
             return;
         }
         if let Some(first) = self.waiting.take() {
-            self.choose(first);
+            self.ask(first);
         }
-        self.choose(facing);
+        self.ask(facing);
     }
 
-    fn choose(&mut self, facing: Facing) {
+    /// Asks whether the point faces it.
+    fn ask(&mut self, facing: Facing) {
         let Self { surfaces, now, point, edge, .. } = *self;
         let own = *self.own.get_or_insert_with(|| match point.triangle {
             Some(triangle) => surfaces.normal_now(now, triangle),
@@ -307,36 +310,14 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
         let listed = (self.triangles, ((self.reach)(facing.triangle), edge(facing.triangle)));
         let Some(facing) = surfaces.flank(now, (point, || own), listed, facing) else { return };
         let turned = facing.normal.dot(own);
-        if turned >= TURNED_AWAY {
-            return;
-        }
-        // of two bodies' faces the smaller one, so that neither is favoured
-        let of_both = |one: &Facing, other: &Facing| f64::min(edge(one.triangle), edge(other.triangle));
-        let is_corner = |first: &Facing, second: &Facing| {
-            surfaces.is_corner(now.places, point, [first, second], of_both(first, second))
-        };
-        let [is_first, is_second] = self.faced.map(|of| {
-            of.is_none_or(|(other, of_other)| {
-                let edge = of_both(&facing, &other);
-                in_way(&facing, turned, edge) < in_way(&other, of_other, edge)
-            })
-        });
-        if is_first {
-            if self.faced[0].is_some_and(|(other, _)| is_corner(&facing, &other)) {
-                self.faced[1] = self.faced[0];
-            }
-            self.faced[0] = Some((facing, turned));
-        } else if is_second {
-            self.faced[1] = Some((facing, turned));
-        }
-        if let [Some((first, _)), Some((second, _))] = &self.faced
-            && !is_corner(first, second)
-        {
-            self.faced[1] = None;
+        if turned < TURNED_AWAY {
+            self.faced.push((facing, turned));
         }
     }
 
-    /// What is in its way: where only one was seen, that it is turned away is all that is asked.
+    /// What is in its way: where only one was seen, that it is turned away is all that is asked. Another one is the one
+    /// that is most in its way of all that are walls of a corner with the first: several triangles of each wall are as
+    /// near to what is behind a node of the line in which walls meet.
     fn finish(mut self) -> [Option<Facing>; 2] {
         if let Some(only) = self.waiting.take() {
             let at_rim = self.surfaces.is_at_rim(self.now, &only, (self.edge)(only.triangle));
@@ -346,9 +327,28 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
             {
                 return [Some(only), None];
             }
-            self.choose(only);
+            self.ask(only);
         }
-        self.faced.map(|of| of.map(|(facing, _)| facing))
+        let Some((first, _)) = self.most(|_| true) else { return [None; 2] };
+        let is_wall = |other: &Facing| {
+            self.surfaces.is_corner(self.now.places, self.point, [&first, other], self.of_both(&first, other))
+        };
+        [Some(first), self.most(is_wall).map(|(second, _)| second)]
+    }
+
+    /// The one of some that is most in its way, of such as are alike the first.
+    fn most(&self, is_meant: impl Fn(&Facing) -> bool) -> Option<(Facing, f64)> {
+        let meant = self.faced.iter().filter(|(facing, _)| is_meant(facing)).copied();
+        meant.reduce(|(most, of_most), (facing, turned)| {
+            let edge = self.of_both(&facing, &most);
+            let is_more = in_way(&facing, turned, edge) < in_way(&most, of_most, edge);
+            if is_more { (facing, turned) } else { (most, of_most) }
+        })
+    }
+
+    /// The length of an edge of two bodies' faces, the smaller one, so that neither is favoured (m).
+    fn of_both(&self, one: &Facing, other: &Facing) -> f64 {
+        f64::min((self.edge)(one.triangle), (self.edge)(other.triangle))
     }
 }
 

@@ -109,7 +109,7 @@ impl Surfaces {
             return (!is_other && gap > beyond).then_some(facing);
         }
         // what is behind the wall is before some face of the flank
-        let weights = weights_in_plane(below, corners);
+        let weights = OnTriangle::weights_in_plane(below, corners);
         (!is_other || outside > -ON_IT * edge).then_some(Facing { triangle, weights, at: below, normal, gap, part: 0 })
     }
 
@@ -153,7 +153,7 @@ impl Surfaces {
             let is_least = is_less && lacks_to_it < least - (1.0 - NEARER) * lacks;
             if normal != DVec3::ZERO && gap >= 0.0 && is_least && may_meet(triangle) && all_behind() {
                 let below = at - gap * normal;
-                let weights = weights_in_plane(below, corners);
+                let weights = OnTriangle::weights_in_plane(below, corners);
                 (found, least) = (Facing { triangle, weights, at: below, normal, gap, part: 0 }, lacks_to_it);
             }
         }
@@ -184,7 +184,9 @@ impl Surfaces {
         let (near, mut found) = (ALIKE * edge, SmallVec::new());
         let [a, b, c] = self.corners(now.places, triangle);
         let (twice, opposite) = ((b - a).cross(c - a).length_squared(), [c - b, a - c, b - a]);
-        let is_near = |corner: usize| weights[corner].powi(2) * twice < near * near * opposite[corner].length_squared();
+        // beyond a side it is near, too
+        let is_near =
+            |corner: usize| weights[corner].max(0.0).powi(2) * twice < near * near * opposite[corner].length_squared();
         if !(0..3).any(is_near) {
             return found;
         }
@@ -206,15 +208,6 @@ impl Surfaces {
         }
         found
     }
-}
-
-/// What each corner of a triangle has of a place in its plane, also beyond its sides: there some have less than
-/// nothing, so that forces act along one line on what bears and what is borne.
-fn weights_in_plane(at: DVec3, [a, b, c]: [DVec3; 3]) -> [f64; 3] {
-    let across = (b - a).cross(c - a);
-    let of = |from: DVec3, to: DVec3| (from - at).cross(to - at).dot(across) / across.length_squared();
-    let (of_b, of_c) = (of(c, a), of(a, b));
-    [1.0 - of_b - of_c, of_b, of_c]
 }
 
 #[cfg(test)]

@@ -37,7 +37,7 @@ pub fn read_contact(world: &mut World, body: Entity) -> Result<Option<ContactRea
     let starts = |touch: &Reals| (0..touch.len()).step_by(MEETING_NUMBERS);
     let points = [Some(&touch.0), of_faces].into_iter().flatten();
     for (touch, first) in points.flat_map(|touch| starts(touch).map(move |first| (touch, first))) {
-        if touch.get(first + 4) > 1.0 {
+        if PointState::of(touch.get(first + 4)).touched() {
             reading.points += 1;
             reading.penetration = reading.penetration.max(-touch.get(first + 5));
         }

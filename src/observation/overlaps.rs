@@ -8,9 +8,10 @@ use crate::components::*;
 use crate::contact::triangles_of;
 use crate::error::Error;
 use crate::math::coordinates;
-use crate::mesh::{Locator, Mesh, OnTriangle, SurfaceFace};
+use crate::mesh::{Locator, Mesh, OnTriangle};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+use std::collections::HashMap;
 
 /// What the warnings are called.
 const OVERLAP: &str = "overlap";
@@ -187,12 +188,16 @@ fn near(world: &World, body: &Placed<'_>, low: DVec3, high: DVec3) -> NearBox {
     NearBox { mesh, elements, nodes, low, high }
 }
 
-/// The surface of an element as contact has it: a face that is warped is two triangles there, and the element bulges
-/// out of one side of them.
-fn triangles((near, surface): (&NearBox, &[SurfaceFace]), body: &Placed<'_>, element: usize) -> Vec<[DVec3; 3]> {
-    let faces = surface.iter().filter(|face| face.element as usize == element);
-    let facets = faces.flat_map(SurfaceFace::facets).map(|facet| facet.map(|node| near.nodes[node as usize]));
-    facets.flat_map(triangles_of).map(|corners| corners.map(|node| body.points[node as usize])).collect()
+/// The surface of a body as contact has it, of each of its elements near a box: a face that is warped is two triangles
+/// there, and the element bulges out of one side of them.
+fn triangles(near: &NearBox, body: &Placed<'_>) -> HashMap<u32, Vec<[DVec3; 3]>> {
+    let mut found: HashMap<u32, Vec<[DVec3; 3]>> = HashMap::new();
+    for face in near.mesh.surface() {
+        let facets = face.facets().map(|facet| facet.map(|node| near.nodes[node as usize]));
+        let of_face = facets.flat_map(triangles_of).map(|corners| corners.map(|node| body.points[node as usize]));
+        found.entry(face.element).or_default().extend(of_face);
+    }
+    found
 }
 
 /// Whether a place in an element is also behind the triangles of its surface, if it has some.
@@ -211,7 +216,8 @@ fn overlap((one, other): (&NearBox, &NearBox), (of, with): (&Placed<'_>, &Placed
     }
     let locator = Locator::new(&other.mesh);
     let points = &one.mesh.points;
-    let surface = if meet { other.mesh.surface() } else { Vec::new() };
+    let surface = if meet { triangles(other, with) } else { HashMap::new() };
+    let behind = |x: DVec3, element: usize| surface.get(&(element as u32)).is_none_or(|of| behind(x, of));
     for face in one.mesh.surface() {
         let corners = one.mesh.element(face.element as usize);
         let middle = corners.iter().map(|&node| points[node as usize]).sum::<DVec3>() / corners.len() as f64;
@@ -220,16 +226,21 @@ fn overlap((one, other): (&NearBox, &NearBox), (of, with): (&Placed<'_>, &Placed
         let mut center = nodes[..count].iter().sum::<DVec3>() / count as f64;
         if meet && count == 4 {
             // of its own middle and that of the side which its two triangles share, the one that is less far out
-            let [a, b, c, d] = face.nodes.map(|node| one.nodes[node as usize]);
-            let from = usize::from(a.min(c) >= b.min(d));
-            let of_side = 0.5 * (nodes[from] + nodes[from + 2]);
-            center = if of_side.distance(middle) < center.distance(middle) { of_side } else { center };
+            let mut triangles = triangles_of(face.nodes.map(|node| one.nodes[node as usize]));
+            let shared = triangles.next().zip(triangles.next()).map(|(first, second)| {
+                let both = (0..4).filter(|&corner| {
+                    let node = one.nodes[face.nodes[corner] as usize];
+                    first.contains(&node) && second.contains(&node)
+                });
+                both.map(|corner| 0.5 * nodes[corner]).sum::<DVec3>()
+            });
+            center = shared.filter(|side| side.distance(middle) < center.distance(middle)).unwrap_or(center);
         }
         for (place, x) in nodes[..count].iter().chain([&center]).enumerate() {
             let below = x.lerp(middle, DEPTH);
             let inside = below.cmpge(one.low).all() && below.cmple(one.high).all();
             let held = inside.then(|| locator.holds(below)).flatten();
-            if let Some(element) = held.filter(|&held| behind(below, &triangles((other, &surface), with, held))) {
+            if let Some(element) = held.filter(|&held| behind(below, held)) {
                 let node = one.nodes[face.nodes[place % count] as usize];
                 let node = of.authoring.node_ids.of(node as usize);
                 let element = with.authoring.element_ids.of(other.elements[element]);

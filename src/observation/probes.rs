@@ -131,9 +131,9 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
 /// The values themselves, or where the probe holds peaks those of the largest size so far, with these.
 pub fn with_peaks(world: &World, probe: Entity, mut values: Vec<f64>) -> Vec<f64> {
     for (value, peak) in values.iter_mut().zip(peaks_so_far(world, probe).into_iter().flatten()) {
-        // what is no number is larger than nothing
+        // what is no number is larger than nothing, nor holds what comes after it off
         let is_larger = value.abs() > peak.abs();
-        if !is_larger {
+        if !is_larger && !peak.is_nan() {
             *value = *peak;
         }
     }

@@ -2,7 +2,6 @@
 
 use super::body_slices::{BodySlices, set_vector, vector_at};
 use super::faced::face;
-use super::meet::{FACES, FREE, SLIDES, STICKS};
 use super::{Meeting, Surface, SurfaceContacts, crossings, turns};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
@@ -26,10 +25,12 @@ const NODES_A_TASK: usize = 1024;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
     pub point: u32,
-    /// How far it is outside of its first face (m).
+    /// How far it is outside of what it faces, of two the less (m).
     pub outside: f64,
     /// How deep it may be inside (m).
     pub allowed: f64,
+    /// Whether it faces two walls.
+    pub in_corner: bool,
 }
 
 /// What is the same for all points in a step.
@@ -38,6 +39,17 @@ pub(super) struct InStep {
     pub largest: f64,
     /// How far points that are inside and may be come out (m).
     pub settling: f64,
+}
+
+/// How a point is to something that it faces.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Outside {
+    /// How far it is outside now (m).
+    pub now: f64,
+    /// How far outwards it has gone since it was noted how far that was (m).
+    pub since: f64,
+    /// The same in the last step (m).
+    pub went: f64,
 }
 
 /// The contacts of a step, and what they act on: nodes that are near something.
@@ -195,18 +207,30 @@ impl Nodes<'_> {
     }
 }
 
-/// How deep a point may be inside (m) that is so far outside (m) of what it faces: as deep as it is found there and no
-/// motion has brought it, by and by less. A point that was not seen before (at the start, laid bare, at a corner that
-/// comes round) is not thrown out in a step. One that touches went outwards (m) as far as it did in the last step, and
-/// not as far as was foreseen: tools may have held what it touches.
-pub(super) fn allowed<T: Scalar>(touch: &[T], gap: f64, went: f64, in_step: &InStep) -> f64 {
-    let expected = match touch[4].to_f64() {
-        FREE => 0.0,
-        // as deep as any motion may have brought it
-        FACES => touch[5].to_f64() - 2.0 * in_step.largest,
-        _ => touch[5].to_f64() + went,
+/// How deep a point may be inside (m) of what it faces, one face or the two walls of a corner: as deep as it is found
+/// there and no motion has brought it, by and by less. A point that was not seen before (at the start, laid bare, at a
+/// corner that comes round) is not thrown out in a step. One that touches went outwards as far as it did in the last
+/// step, and not as far as was foreseen: tools may have held what it touches.
+///
+/// Of walls that change places it is not known which was which. So what has faced two, and what has touched nothing, is
+/// taken to have gone as far as any motion may have brought it; and of two, one of which it has touched, that one is
+/// the one of which motion tells more.
+pub(super) fn allowed<T: Scalar>(touch: &[T], faced: &[Outside], in_step: &InStep) -> f64 {
+    let [before, last] = [touch[3].to_f64(), touch[5].to_f64()];
+    let PointState { did, in_corner } = PointState::of(touch[4].to_f64());
+    let lowest = faced.iter().map(|outside| outside.now).fold(f64::INFINITY, f64::min);
+    let unexpected = |outside: &Outside| outside.now - (last + outside.since);
+    let deeper = match (did, faced) {
+        (Did::Free, _) => lowest,
+        (Did::Sticks | Did::Slides, [one]) if !in_corner => unexpected(one),
+        (Did::Sticks | Did::Slides, [one, other]) if !in_corner => {
+            let is_one = unexpected(one).abs() <= unexpected(other).abs();
+            let (old, new) = if is_one { (one, other) } else { (other, one) };
+            unexpected(old).min(new.now - new.went - before)
+        }
+        _ => lowest - (last - 2.0 * in_step.largest),
     };
-    (touch[3].to_f64() + (gap - expected).min(0.0) + in_step.settling).min(0.0).max(gap.min(0.0))
+    (before + deeper.min(0.0) + in_step.settling).min(0.0).max(lowest.min(0.0))
 }
 
 /// Finds what points face, and the contacts of a step, of nodes whose steps are foreseen; notes what points face, and
@@ -229,18 +253,35 @@ pub(super) fn gather<T: Scalar>(
         let kept = contacts.kept(point);
         let touch = of_bodies[kept.body].kept(kept);
         let of = &contacts.surface.points[point as usize];
-        let (outside, parts) = (contacts.gap(of, first), nodes.parts(&contacts.surface, of, first));
-        let went = first.normal.dot(parts.step(nodes.earlier));
+        let in_step = contacts.in_step(of, first, clock);
+        let sight = nodes.sight(contacts, of, first);
         // as it is kept
-        let allowed = T::from_f64(allowed(touch, outside, went, &contacts.in_step(of, first, clock))).to_f64();
-        seen.push(Seen { point, outside, allowed });
-        nodes.meet((contacts, of_bodies), (faced, touch, parts), &seen[seen.len() - 1], clock, batch);
+        let allowed = |faced: &[Outside]| T::from_f64(allowed(touch, faced, &in_step)).to_f64();
+        let mut meet = |sight: Sight<'_>, seen: &Seen, is_first: bool| {
+            nodes.meet((contacts, of_bodies), (sight, touch, is_first), seen, batch);
+        };
+        match &faced.second {
+            None => {
+                let (outside, allowed) = (sight.outside.now, allowed(&[sight.outside]));
+                seen.push(Seen { point, outside, allowed, in_corner: false });
+                meet(sight, &seen[seen.len() - 1], true);
+            }
+            Some(second) => {
+                let other = nodes.sight(contacts, of, second);
+                let outside = sight.outside.now.min(other.outside.now);
+                let allowed = allowed(&[sight.outside, other.outside]);
+                seen.push(Seen { point, outside, allowed, in_corner: true });
+                meet(sight, &seen[seen.len() - 1], true);
+                meet(other, &seen[seen.len() - 1], false);
+            }
+        }
     });
-    for &Seen { point, outside, allowed } in seen.iter().flatten() {
+    for &Seen { point, outside, allowed, in_corner } in seen.iter().flatten() {
         let kept = contacts.kept(point);
         let touch = bodies[kept.body].kept_mut(kept);
         set_vector(touch, 0, DVec3::ZERO);
-        touch[3..6].iter_mut().zip([allowed, FACES, outside]).for_each(|(of, number)| *of = T::from_f64(number));
+        let state = PointState { did: Did::Faces, in_corner }.number();
+        touch[3..6].iter_mut().zip([allowed, state, outside]).for_each(|(of, number)| *of = T::from_f64(number));
         facing.push(point);
     }
     crossings::find(contacts, reach);
@@ -266,54 +307,59 @@ pub(super) fn gather<T: Scalar>(
     }
 }
 
+/// Something that a point faces, and how it is to that.
+struct Sight<'a> {
+    facing: &'a Facing,
+    /// The point's nodes against those of the face.
+    parts: Parts,
+    outside: Outside,
+}
+
 impl Nodes<'_> {
-    /// The contacts of a point, with what is kept of it, and with its nodes against those of its first face.
+    #[inline(always)] // likewise
+    fn sight<'a>(&self, contacts: &SurfaceContacts, point: &Point, facing: &'a Facing) -> Sight<'a> {
+        let parts = self.parts(&contacts.surface, point, facing);
+        let went = facing.normal.dot(parts.step(self.earlier));
+        Sight { facing, parts, outside: Outside { now: contacts.gap(point, facing), since: went, went } }
+    }
+
+    /// The contact of a point with something that it faces, with what is kept of it.
     #[inline(always)] // likewise
     fn meet<T: Scalar>(
         &self,
         (contacts, bodies): (&SurfaceContacts, &[BodySlices<'_, T>]),
-        (faced, touch, of_first): (&Faced, &[T], Parts),
-        &Seen { point: number, outside, allowed }: &Seen,
-        clock: &Clock,
+        (Sight { facing, parts, outside }, touch, is_first): (Sight<'_>, &[T], bool),
+        &Seen { point: number, allowed, .. }: &Seen,
         batch: &mut Vec<Contact>,
     ) {
         let surface = &contacts.surface;
         let point = &surface.points[number as usize];
-        let (state, slip) = (touch[4].to_f64(), vector_at(touch, 0));
-        let both = [(&faced.first, true), (&faced.second, false)];
-        for (facing, is_first) in both.into_iter().filter_map(|(facing, is_first)| Some((facing.as_ref()?, is_first))) {
-            let body = surface.triangles.bodies[facing.triangle as usize];
-            let Some(meeting) = contacts.meeting(point.body, body) else { continue };
-            let Meeting { friction, spring, edge, .. } = meeting;
-            let parts = if is_first { of_first } else { self.parts(surface, point, facing) };
-            // of another face nothing is known of how it got there
-            let (outside, allowed, slip) = match is_first {
-                true => (outside, allowed, slip),
-                false => (contacts.gap(point, facing), 0.0, DVec3::ZERO),
+        let Some(meeting) = contacts.meeting(point.body, surface.triangles.bodies[facing.triangle as usize]) else {
+            return;
+        };
+        let Meeting { friction, spring, edge, .. } = meeting;
+        // of how it has slipped one face knows
+        let slip = if is_first { vector_at(touch, 0) } else { DVec3::ZERO };
+        let resists = || {
+            let did = PointState::of(touch[4].to_f64()).did;
+            let turned = contacts.turned(&meeting, (point, facing), bodies);
+            // what touched nothing and does not slip is held by the static coefficient
+            let still = || {
+                let before = parts.step(self.earlier) - turned;
+                (before - facing.normal * facing.normal.dot(before)).length() <= STILL * edge
             };
-            let gap = match is_first {
-                true => (outside - allowed).max(-OUT * edge),
-                false => outside.max(-meeting.settling(clock)),
-            };
-            let resists = || {
-                let turned = contacts.turned(&meeting, (point, facing), bodies);
-                // what touched nothing and does not slip is held by the static coefficient
-                let still = || {
-                    let before = parts.step(self.earlier) - turned;
-                    (before - facing.normal * facing.normal.dot(before)).length() <= STILL * edge
-                };
-                let is_held = state == STICKS || state != SLIDES && friction[0] != friction[1] && still();
-                (friction[usize::from(!is_held)], slip - turned)
-            };
-            let within = if point.triangle.is_some() { SHARES * edge } else { 0.0 };
-            self.add(
-                batch,
-                parts,
-                (facing.normal, gap),
-                resists,
-                (spring, outside - allowed, within),
-                Met { point: number, is_first, outside },
-            );
-        }
+            let is_held = did == Did::Sticks || did != Did::Slides && friction[0] != friction[1] && still();
+            (friction[usize::from(!is_held)], slip - turned)
+        };
+        let within = if point.triangle.is_some() { SHARES * edge } else { 0.0 };
+        let gap = (outside.now - allowed).max(-OUT * edge);
+        self.add(
+            batch,
+            parts,
+            (facing.normal, gap),
+            resists,
+            (spring, outside.now - allowed, within),
+            Met { point: number, is_first, outside: outside.now },
+        );
     }
 }

@@ -8,7 +8,6 @@
 
 use super::device::{MOTION_WORDS, SurfaceContact, find, is_on_device, note};
 use super::gather::OUT;
-use super::meet::{FACES, FREE, SLIDES, STICKS};
 use super::{Meeting, SurfaceContacts};
 use crate::backend::Buffers;
 use crate::backend::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
@@ -90,9 +89,11 @@ impl Shared {
 
     /// With what is kept of points of a kind.
     fn with_touch(&self, kernel: Kernel, points: &Points, buffers: &mut dyn Buffers) -> Kernel {
-        let states =
-            [("FREE", FREE), ("FACES", FACES), ("STICKS", STICKS), ("SLIDES", SLIDES), ("OUT", OUT), ("STILL", STILL)];
-        let states = states.map(|(name, number)| format!("const {name}: f32 = {number:?};\n")).concat();
+        let did = [("FREE", Did::Free), ("FACES", Did::Faces), ("STICKS", Did::Sticks), ("SLIDES", Did::Slides)];
+        let did = did.map(|(name, did)| (name, PointState { did, in_corner: false }.number()));
+        let numbers =
+            did.into_iter().chain([("IN_CORNER", PointState::IN_CORNER.into()), ("OUT", OUT), ("STILL", STILL)]);
+        let states: String = numbers.map(|(name, number)| format!("const {name}: f32 = {number:?};\n")).collect();
         let (rows, place) = match points.of_faces {
             true => ("", "point - surface.first"),
             false => {

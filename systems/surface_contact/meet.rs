@@ -11,12 +11,6 @@ use crate::math::Scalar;
 use glam::{DVec3, DVec4};
 use smallvec::SmallVec;
 
-/// What a point did in the last step, in [`SurfaceTouch`].
-pub(super) const FREE: f64 = 0.0;
-pub(super) const FACES: f64 = 1.0;
-pub(super) const STICKS: f64 = 2.0;
-pub(super) const SLIDES: f64 = 3.0;
-
 /// Nodes with signed weights.
 pub(super) type SignedNodes = SmallVec<[(u32, f64); 8]>;
 
@@ -112,7 +106,7 @@ pub(super) fn forget<T: Scalar>(contacts: &mut SurfaceContacts, now: &[u32], bod
         // as deep as a point may be inside that never faced anything, so that a run that goes on from here finds the
         // same
         touch[3] = T::default();
-        touch[4] = T::from_f64(FREE);
+        touch[4] = T::from_f64(PointState::default().number());
         touch[5] = T::default();
     }
     contacts.surface.touching.clear();
@@ -171,13 +165,20 @@ fn note_touches<T: Scalar>(
         deepest = deepest.max(-after);
         if contact.is_first {
             set_vector(touch, 0, contact.slip);
-            touch[4] = T::from_f64(if contact.slides { SLIDES } else { STICKS });
+            note_state(touch, contact.slides);
         }
         if counts_ways {
             touch[6] = T::from_f64(touch[6].to_f64() + contact.slid);
         }
     }
     contacts.surface.figures.deepest = deepest;
+}
+
+/// Notes that a point that faced something touches it.
+pub(super) fn note_state<T: Scalar>(touch: &mut [T], slides: bool) {
+    let faced = PointState::of(touch[4].to_f64());
+    let did = if slides { Did::Slides } else { Did::Sticks };
+    touch[4] = T::from_f64(PointState { did, ..faced }.number());
 }
 
 /// Counts what contact takes of each node, with `work_factor` for each joule, by where that goes by now. Who acts on

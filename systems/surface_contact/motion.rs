@@ -6,7 +6,7 @@ use super::{Meeting, MeetingColumns, MeetingColumnsReadOnlyItem, Surface, Surfac
 use super::{crossings, faced, slices_of};
 use crate::backend::cpu::Cpu;
 use crate::components::Clock;
-use crate::contact::{Finder, Lists, Point, Shortlist, Surfaces};
+use crate::contact::{Finder, Lists, Point, Shortlist};
 use crate::error::Error;
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
@@ -146,18 +146,34 @@ pub(super) fn place<T: Scalar>(contacts: &SurfaceContacts, bodies: &[BodySlices<
     of_body.rest[row] - contacts.reference + of_body.displacement(row)
 }
 
-/// Some ascending numbers a task, with the values of these and of those between, and the number of the first value.
-pub(super) fn tasks<'a, T>(
-    numbers: &'a [u32],
-    mut left: &'a mut [T],
-) -> impl Iterator<Item = (&'a [u32], usize, &'a mut [T])> {
-    let mut first = 0;
-    numbers.chunks(NUMBERS_A_TASK).map(move |numbers| {
+/// Finds the values with these numbers, ascending, of all.
+pub(super) fn fill<V: Send>(cpu: &Cpu, numbers: &[u32], mut left: &mut [V], value: impl Fn(u32) -> V + Sync) {
+    let (mut first, value) = (0, &value);
+    let tasks = numbers.chunks(NUMBERS_A_TASK).map(move |numbers| {
         let end = numbers.last().map_or(first, |&last| last as usize + 1);
         let (values, others) = std::mem::take(&mut left).split_at_mut(end - first);
         left = others;
-        (numbers, std::mem::replace(&mut first, end), values)
-    })
+        Fill { numbers, first: std::mem::replace(&mut first, end), values, value }
+    });
+    cpu.for_each(tasks, |task| cpu.dispatch(task));
+}
+
+/// The task of finding values with some numbers.
+struct Fill<'a, V, F> {
+    numbers: &'a [u32],
+    /// The number of the first value.
+    first: usize,
+    values: &'a mut [V],
+    value: &'a F,
+}
+
+impl<V, F: Fn(u32) -> V> pulp::WithSimd for Fill<'_, V, F> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self { numbers, first, values, value } = self;
+        numbers.iter().for_each(|&number| values[number as usize - first] = value(number));
+    }
 }
 
 /// Makes the lists anew, of all that is within `reach` (m) and thickness, and a skin.
@@ -220,54 +236,12 @@ pub(super) fn renew_shortlists<T: Scalar>(contacts: &mut SurfaceContacts, bodies
 pub(super) fn update_places<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], cpu: &Cpu) {
     let mut places = std::mem::take(&mut contacts.surface.places);
     let of = &*contacts;
-    cpu.for_each(tasks(&of.surface.near.nodes, &mut places), |(nodes, first, places)| {
-        cpu.dispatch(Places { contacts: of, bodies, nodes, first, places });
-    });
+    fill(cpu, &of.surface.near.nodes, &mut places, |node| place(of, bodies, node as usize));
     contacts.surface.places = places;
-}
-
-/// The task of seeing where nodes with these numbers are.
-struct Places<'a, 'b, T> {
-    contacts: &'a SurfaceContacts,
-    bodies: &'a [BodySlices<'b, T>],
-    nodes: &'a [u32],
-    /// The number of the first place.
-    first: usize,
-    places: &'a mut [DVec3],
-}
-
-impl<T: Scalar> pulp::WithSimd for Places<'_, '_, T> {
-    type Output = ();
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        let Self { contacts, bodies, nodes, first, places } = self;
-        nodes.iter().for_each(|&node| places[node as usize - first] = place(contacts, bodies, node as usize));
-    }
 }
 
 /// Sees which way the triangles look that are near something.
 pub(super) fn update_normals(surface: &mut Surface, cpu: &Cpu) {
     let Surface { near, triangles, places, normals, .. } = surface;
-    cpu.for_each(tasks(&near.triangles, normals), |(numbers, first, normals)| {
-        cpu.dispatch(Normals { triangles, places, numbers, first, normals });
-    });
-}
-
-/// The task of finding the normals of triangles with these numbers.
-struct Normals<'a> {
-    triangles: &'a Surfaces,
-    places: &'a [DVec3],
-    numbers: &'a [u32],
-    /// The number of the first normal.
-    first: usize,
-    normals: &'a mut [DVec3],
-}
-
-impl pulp::WithSimd for Normals<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        let Self { triangles, places, numbers, first, normals } = self;
-        numbers.iter().for_each(|&number| normals[number as usize - first] = triangles.normal(places, number));
-    }
+    fill(cpu, &near.triangles, normals, |triangle| triangles.normal(places, triangle));
 }

@@ -1,54 +1,18 @@
 //! Bodies in implicit steps: springs, whose forces are those at the end of the step that is solved for.
 
+use super::SurfaceContacts;
 use super::body_slices::{BodySlices, Kept, set_vector, vector_at};
-use super::gather::{Gathered, SHARES, allowed};
-use super::meet::{FACES, SLIDES, STICKS, SignedNodes, forget, push, release};
-use super::{Meeting, SurfaceContacts, crossings, faced, turns};
+use super::gather::{Gathered, SHARES};
+use super::meet::{forget, note_state, push, release};
+use super::pairs::{Pair, What};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
-use crate::contact::{Contact, Facing, Parts, Point};
+use crate::contact::{Contact, Parts};
 use crate::error::Error;
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::RunSystemOnce;
 use glam::{DMat3, DVec3};
-use smallvec::SmallVec;
-
-/// A point and what it faces in a step. Weights and normal are those at its beginning, as in explicit steps: what a
-/// point faces would change all at once where it comes round a corner, and of some steps there were no end.
-#[derive(Clone, Debug)]
-pub(super) struct Pair {
-    meeting: Meeting,
-    point: u32,
-    /// Whether it is the first face of the point: only there it is kept how it got there, and how far it has slipped.
-    first: bool,
-    /// Whether edges cross, of which nothing is kept.
-    crosses: bool,
-    normal: DVec3,
-    /// Nodes with signed weights.
-    nodes: SignedNodes,
-    /// How many of these, the first, are the point's: of the face's, too, some weights may be positive.
-    points: usize,
-    /// How deep it may be inside (m, 0 or negative): as deep as it is found where it was not before.
-    allowed: f64,
-    /// What is missing to the gap (m) beside the places of the nodes along the normal.
-    offset: f64,
-    /// How far a `thickness` has turned with the face (m), of free nodes in the step before: it is not slip.
-    turned: DVec3,
-}
-
-impl Pair {
-    /// The point's nodes and their weights.
-    fn of_point(&self) -> &[(u32, f64)] {
-        &self.nodes[..self.points]
-    }
-
-    /// How far the point is outside of where it may be (m), where nodes are.
-    fn gap(&self, places: &[DVec3]) -> f64 {
-        let along = |&(node, weight): &(u32, f64)| weight * self.normal.dot(places[node as usize]);
-        self.offset + self.nodes.iter().map(along).sum::<f64>()
-    }
-}
 
 /// [`TouchingSpring::slopes`] of a contact.
 pub(super) type Slopes = [DMat3; 2];
@@ -88,114 +52,6 @@ pub(crate) fn find(world: &World, first_axis: impl Fn(Entity) -> Option<usize>, 
     }
 }
 
-/// Finds which points may touch what in the step that begins, of what points face.
-pub(super) fn pair<T: Scalar>(
-    contacts: &mut SurfaceContacts,
-    (clock, cpu): (&Clock, &Cpu),
-    reach: f64,
-    bodies: &[BodySlices<'_, T>],
-) {
-    let mut found = std::mem::take(&mut contacts.surface.faced_by_task);
-    found.resize_with(found.len().max(faced::tasks(contacts)), Vec::new);
-    found.iter_mut().for_each(Vec::clear);
-    faced::face(contacts, reach, cpu, found.iter_mut(), |_, point, faced, found| found.push((point, *faced)));
-    crossings::find(contacts, reach);
-    if clock.relaxation.is_none() {
-        turns::update(contacts, bodies, cpu);
-    }
-    let mut pairs = std::mem::take(&mut contacts.surface.pairs);
-    let surface = &contacts.surface;
-    let mut add = |pair: Pair, gap: f64| {
-        let offset = gap - pair.allowed - pair.gap(&surface.places);
-        pairs.push(Pair { offset, ..pair });
-    };
-    // on the way to rest there is no motion
-    let goes_on = |point: &Point, facing: &Facing| -> DVec3 {
-        let step = |(node, weight): (u32, f64)| {
-            let (body, row) = surface.nodes[node as usize];
-            weight * vector_at(bodies[body as usize].step, 3 * row as usize)
-        };
-        if clock.relaxation.is_some() {
-            return DVec3::ZERO;
-        }
-        surface.between(point, facing).0.into_iter().map(step).sum()
-    };
-    for &(number, faced) in found.iter().flatten() {
-        let point = &surface.points[number as usize];
-        let at_end = |facing: &Facing| contacts.faced_at_end(number, facing, true, goes_on);
-        let both = [&faced.first, &faced.second].into_iter().flatten().map(at_end);
-        let mut both: SmallVec<[Facing; 2]> = both.collect();
-        // of walls that are as near rounding chooses which is the first, and what is kept of one would be taken for
-        // what is kept of the other; both may end outside of the same
-        both.sort_by_key(|facing| facing.triangle);
-        both.dedup_by_key(|facing| facing.triangle);
-        for (facing, first) in both.iter().zip([true, false]) {
-            let body = surface.triangles.bodies[facing.triangle as usize];
-            let Some(meeting) = contacts.meeting(point.body, body) else { continue };
-            let in_step = contacts.in_step(point, facing, clock);
-            let (nodes, points) = surface.between(point, facing);
-            let (gap, kept) = (contacts.gap(point, facing), contacts.kept(number));
-            let allowed = match (first, &clock.springs) {
-                (true, _) => allowed(bodies[kept.body].kept(kept), gap, 0.0, &in_step),
-                // at rest all presses, however it got there
-                (false, _) if in_step.settling == f64::INFINITY => 0.0,
-                (false, Some(springs)) => borne(contacts, (point, facing.normal, gap), (&meeting, springs), bodies),
-                (false, None) => 0.0,
-            };
-            // on the way to rest nobody knows it before nodes are where they will be
-            let turned = match clock.relaxation {
-                None => contacts.turned(&meeting, (point, facing), bodies),
-                Some(_) => DVec3::ZERO,
-            };
-            let (point, normal) = (number, facing.normal);
-            let crosses = false;
-            add(Pair { meeting, point, first, crosses, normal, nodes, points, allowed, offset: 0.0, turned }, gap);
-        }
-    }
-    // nothing is known of how edges slipped that cross
-    for (pair, crossing) in &surface.crossings.found {
-        let [one, other] = pair.map(|edge| surface.crossings.edges[edge as usize]);
-        let Some(meeting) = contacts.crossing(one.body, other.body) else { continue };
-        let [of_one, of_other] = crossing.weights;
-        let of_other = other.nodes.into_iter().zip(of_other).map(|(node, weight)| (node, -weight));
-        let nodes = one.nodes.into_iter().zip(of_one).chain(of_other).collect();
-        // nodes are the first of the points
-        let pair = Pair {
-            meeting,
-            point: one.nodes[0],
-            first: false,
-            crosses: true,
-            normal: crossing.normal,
-            nodes,
-            points: one.nodes.len(),
-            allowed: 0.0,
-            offset: 0.0,
-            turned: DVec3::ZERO,
-        };
-        add(pair, crossing.gap - meeting.thickness);
-    }
-    (contacts.surface.pairs, contacts.surface.faced_by_task) = (pairs, found);
-}
-
-/// How deep a point may be inside of another face (m, 0 or negative), of which nothing is kept of how it got there: as
-/// deep as the force along its normal at the end of the last step does not tell of.
-fn borne<T: Scalar>(
-    contacts: &SurfaceContacts,
-    (point, normal, gap): (&Point, DVec3, f64),
-    (meeting, springs): (&Meeting, &SolvedSprings),
-    bodies: &[BodySlices<'_, T>],
-) -> f64 {
-    let Some(spring) = meeting.spring else { return 0.0 };
-    let on_node = |(node, _): (u32, f64)| {
-        let (body, row) = contacts.surface.nodes[node as usize];
-        normal.dot(vector_at(bodies[body as usize].force, 3 * row as usize))
-    };
-    let force: f64 = point.parts().map(on_node).sum();
-    let mass = mass_between(contacts, point.parts(), bodies);
-    let stiffness = spring.press(springs, mass, 0.0, [0.0, springs.step]).stiffness;
-    (gap + force.max(0.0) / stiffness).min(0.0)
-}
-
 /// Finds the forces of springs where nodes are. They are added to the loads, and what points carry on is noted, only
 /// where the step is taken.
 pub(super) fn press<T: Scalar>(
@@ -214,7 +70,7 @@ pub(super) fn press<T: Scalar>(
     let shares = springs.shared.then(|| shares_of(contacts, &gathered, &pairs));
     for pair in &pairs {
         let gap = pair.gap(&contacts.surface.places);
-        if pair.first {
+        if pair.what == What::First {
             gathered.facing.push(pair.point);
         }
         // what is no number is told by guards, not lost
@@ -299,15 +155,15 @@ fn add<T: Scalar>(
     bodies: &mut [BodySlices<'_, T>],
     all: &mut Vec<Slopes>,
 ) {
-    let &Pair { meeting, point, first, crosses, normal, .. } = pair;
+    let &Pair { meeting, point, what, normal, .. } = pair;
     let Some(spring) = meeting.spring else { return };
     let kept = contacts.kept(point);
     let touch = bodies[kept.body].kept(kept);
-    let state = touch[4].to_f64();
+    let state = PointState::of(touch[4].to_f64());
     // of a second face, too: what has slipped along both is the same
-    let kept = if !crosses && state >= STICKS { vector_at(touch, 0) } else { DVec3::ZERO };
+    let kept = if what != What::Crossing && state.touched() { vector_at(touch, 0) } else { DVec3::ZERO };
     let slip = kept - pair.turned;
-    let friction = meeting.friction[usize::from(state == SLIDES)];
+    let friction = meeting.friction[usize::from(state.did == Did::Slides)];
     let mut parts = Parts::default();
     for &(node, weight) in &pair.nodes {
         parts.add(gathered.slots[node as usize], weight);
@@ -320,7 +176,7 @@ fn add<T: Scalar>(
     (contact.pressing, contact.rubbing, contact.slides) = (press.pressing, rubbing.force, rubbing.slides);
     // what slides keeps as much elastic slip as its force is of
     contact.slip = if press.stiffness > 0.0 { -contact.rubbing / press.stiffness } else { DVec3::ZERO };
-    (contact.point, contact.is_first, contact.outside) = (point, first, gap + pair.allowed);
+    (contact.point, contact.is_first, contact.outside) = (point, what == What::First, gap + pair.allowed);
     gathered.set.add(contact);
 }
 
@@ -331,12 +187,14 @@ fn note<T: Scalar>(
     pairs: &[Pair],
     bodies: &mut [BodySlices<'_, T>],
 ) {
-    for pair in pairs.iter().filter(|pair| pair.first) {
-        let gap = pair.gap(&contacts.surface.places);
+    for pair in pairs.iter().filter(|pair| pair.what != What::Crossing) {
+        let outside = pair.gap(&contacts.surface.places) + pair.allowed;
         let kept = contacts.kept(pair.point);
         let touch = bodies[kept.body].kept_mut(kept);
+        let in_corner = pair.what == What::Second;
+        let outside = if in_corner { outside.min(touch[5].to_f64()) } else { outside };
         set_vector(touch, 0, DVec3::ZERO);
-        let numbers = [pair.allowed, FACES, gap + pair.allowed];
+        let numbers = [pair.allowed, PointState { did: Did::Faces, in_corner }.number(), outside];
         touch[3..6].iter_mut().zip(numbers).for_each(|(touch, number)| *touch = T::from_f64(number));
     }
     contacts.surface.figures.contacts += gathered.set.count() as u64;
@@ -345,7 +203,7 @@ fn note<T: Scalar>(
             let kept = contacts.kept(contact.point);
             let touch = bodies[kept.body].kept_mut(kept);
             set_vector(touch, 0, contact.slip);
-            touch[4] = T::from_f64(if contact.slides { SLIDES } else { STICKS });
+            note_state(touch, contact.slides);
         }
         let deepest = &mut contacts.surface.figures.deepest;
         *deepest = deepest.max(-contact.outside);

@@ -120,7 +120,7 @@ fn remember(contacts: &mut SurfaceContacts, bodies: &mut Query<(Entity, MeetingC
         let columns = &columns[body].1;
         let of_faces = columns.face_touch.map(|touch| &touch.0);
         let numbers = if of_face { of_faces } else { Some(&columns.touch.0) };
-        numbers.is_some_and(|numbers| numbers.get(first + 4) > super::meet::FREE)
+        numbers.is_some_and(|numbers| PointState::of(numbers.get(first + 4)).did > Did::Free)
     };
     surface.touching = (0..surface.points.len() as u32).filter(touches).collect();
 }

@@ -1,7 +1,7 @@
 //! How surfaces have turned in the last step: what friction holds above them by a thickness goes along.
 
 use super::body_slices::{BodySlices, vector};
-use super::motion::{place, tasks};
+use super::motion::{fill, place};
 use super::{Meeting, Surface, SurfaceContacts};
 use crate::backend::cpu::Cpu;
 use crate::contact::{Facing, Point};
@@ -97,32 +97,9 @@ pub(super) fn update<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySl
     let are_few = near.triangles.len() <= TRIANGLES_A_POINT * touching.len();
     if are_few && of.meetings.iter().flatten().any(Meeting::goes_along) {
         turns.resize(triangles.triangles.len(), None);
-        cpu.for_each(tasks(&near.triangles, &mut turns), |(numbers, first, turns)| {
-            cpu.dispatch(Turns { contacts: of, bodies, numbers, first, turns });
-        });
+        fill(cpu, &near.triangles, &mut turns, |triangle| Some(Turn::of(of, bodies, triangle)));
     } else {
         turns.clear();
     }
     contacts.surface.turns = turns;
-}
-
-/// The task of seeing how triangles with these numbers have turned.
-struct Turns<'a, 'b, T> {
-    contacts: &'a SurfaceContacts,
-    bodies: &'a [BodySlices<'b, T>],
-    numbers: &'a [u32],
-    /// The number of the first turn.
-    first: usize,
-    turns: &'a mut [Option<Turn>],
-}
-
-impl<T: Scalar> pulp::WithSimd for Turns<'_, '_, T> {
-    type Output = ();
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        let Self { contacts, bodies, numbers, first, turns } = self;
-        for &number in numbers {
-            turns[number as usize - first] = Some(Turn::of(contacts, bodies, number));
-        }
-    }
 }

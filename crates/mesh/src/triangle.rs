@@ -57,6 +57,16 @@ impl OnTriangle {
         Self { at: a + ab * v + ac * w, weights: [1.0 - v - w, v, w], part: 0 }
     }
 
+    /// What each corner has of a place in the triangle's plane, also beyond its sides: there some have less than
+    /// nothing, so that forces act along one line on what bears and what is borne. Together 1; of a triangle without
+    /// area no numbers.
+    pub fn weights_in_plane(at: DVec3, [a, b, c]: [DVec3; 3]) -> [f64; 3] {
+        let across = (b - a).cross(c - a);
+        let of = |from: DVec3, to: DVec3| (from - at).cross(to - at).dot(across) / across.length_squared();
+        let (of_b, of_c) = (of(c, a), of(a, b));
+        [1.0 - of_b - of_c, of_b, of_c]
+    }
+
     /// Whether the nearest place to `y` stays on the same side or corner, as long as no two of the corners and `y` move
     /// against each other by more than a distance m. Products of vectors from a corner change by no more than the sum
     /// of what one of them alone does to them, with lengths that are as large as they may become. What is across a side

@@ -1,6 +1,7 @@
 #![allow(clippy::expect_used)]
 
 use super::*;
+use crate::contact::candidates::ON_IT;
 
 /// What a point faces by its shortlist, which is known, and whether that is seen at a glance: then the same.
 pub(in crate::contact) fn by_shortlist(
@@ -44,6 +45,13 @@ pub(in crate::contact) fn faced(
     surfaces.faced((now, point), listed, (&reach, |_| 1.0), (&mut short, stays), kept);
     // what the shortlist leaves out changes nothing
     assert_eq!(by_shortlist(surfaces, (now, point), listed, &reach, &short).0, found);
+    // forces act along one line, but for what counts as being on a face
+    for facing in [&found.first, &found.second].into_iter().flatten() {
+        let corners = surfaces.corners(places, facing.triangle).into_iter().zip(facing.weights);
+        let bears: DVec3 = corners.map(|(corner, weight)| corner * weight).sum();
+        let off = (point.place(places) - bears).distance(facing.gap * facing.normal);
+        assert!(off <= ON_IT, "{facing:?} is borne {off} m beside");
+    }
     found
 }
 
@@ -108,6 +116,33 @@ fn a_wall_that_rises_is_another_face_and_one_that_falls_off_is_not() {
             let faced = faced(&surfaces, &places, &point, &[0, 1, 2, 3], |_| 0.2);
             assert!(faced.first.is_some(), "{rises}, {height}");
             assert_eq!(faced.second.is_some(), rises, "{rises}, {height}: {faced:?}");
+        }
+    }
+}
+
+/// A node that has sunk into a corner of 90° or 120° is borne by both walls, each along its own normal, wherever behind
+/// the line in which they meet.
+#[test]
+fn what_has_sunk_into_a_corner_is_borne_by_both_walls() {
+    for opens in [45.0_f64, 60.0] {
+        let (across, up) = opens.to_radians().sin_cos();
+        for off in [-0.02, 0.0, 0.02] {
+            let line = [(0.0, -1.0, 0.0), (0.0, 2.0, 0.0)];
+            let walls = [(across, 0.3, up), (-across, 0.3, up)];
+            let cone = [(off, 0.0, -0.1), (1.0, 0.0, 1.0), (-0.5, 1.0, 1.0), (-0.5, -1.0, 1.0)];
+            let places: Vec<DVec3> = line.into_iter().chain(walls).chain(cone).map(DVec3::from).collect();
+            let triangles = vec![[0, 2, 1], [0, 1, 3], [4, 6, 5], [4, 7, 6], [4, 5, 7]];
+            let surfaces = Surfaces::new(8, triangles, vec![0, 0, 1, 1, 1], vec![0.5; 5]);
+            let faced = faced(&surfaces, &places, &Point::node(1, 4), &[0, 1], |_| 0.2);
+            for facing in [faced.first, faced.second] {
+                let facing = facing.expect("both walls");
+                let normal = surfaces.normal(&places, facing.triangle);
+                assert!(normal.z > 0.5 && facing.normal == normal, "{facing:?}");
+                let depth = -normal.dot(places[4]);
+                assert!((facing.gap + depth).abs() < 1e-12, "{facing:?}, {depth}");
+                // along the line it is where the node is, and behind it where no wall is
+                assert!(facing.weights.iter().any(|&weight| weight < -1e-3), "{facing:?}");
+            }
         }
     }
 }

@@ -42,13 +42,13 @@ pub(super) fn rubs(world: &mut World) -> bool {
         return false;
     }
     let has_friction = |[sticking, sliding]: [f64; 2]| sticking.max(sliding) > 0.0;
-    let any = |of: &Reals, number: usize, stride: usize, touches: f64| {
-        (number..of.len()).step_by(stride).any(|at| of.get(at) >= touches)
+    let any = |of: &Reals, number: usize, stride: usize, touches: fn(f64) -> bool| {
+        (number..of.len()).step_by(stride).any(|at| touches(of.get(at)))
     };
     for (contacts, touch) in world.query::<(&ToolContacts, &ToolTouch)>().iter(world) {
         let (count, numbers) = (contacts.tools.len(), contacts.numbers_a_tool());
         let mut rough = contacts.tools.iter().enumerate().filter(|(_, contact)| has_friction(contact.friction));
-        if rough.any(|(tool, _)| any(&touch.0, numbers * tool + 3, numbers * count, 1.0)) {
+        if rough.any(|(tool, _)| any(&touch.0, numbers * tool + 3, numbers * count, |state| state >= 1.0)) {
             return true;
         }
     }
@@ -56,8 +56,9 @@ pub(super) fn rubs(world: &mut World) -> bool {
         |contacts: &SurfaceContacts| contacts.meetings.iter().flatten().any(|meeting| has_friction(meeting.friction));
     let mut touches = world.query::<(&SurfaceTouch, Option<&FaceTouch>)>();
     let touch = |(of_nodes, of_faces): (&SurfaceTouch, Option<&FaceTouch>)| {
-        any(&of_nodes.0, 4, MEETING_NUMBERS, 2.0)
-            || of_faces.is_some_and(|of_faces| any(&of_faces.0, 4, MEETING_NUMBERS, 2.0))
+        let touched = |number| PointState::of(number).touched();
+        any(&of_nodes.0, 4, MEETING_NUMBERS, touched)
+            || of_faces.is_some_and(|of_faces| any(&of_faces.0, 4, MEETING_NUMBERS, touched))
     };
     world.get_resource::<SurfaceContacts>().is_some_and(are_rough) && touches.iter(world).any(touch)
 }
