@@ -154,8 +154,8 @@ struct Faced {
     second: Facing,
 }
 
-// The face that is most in a point's way, and of those that are walls of a corner with it the one that is: several
-// triangles of each wall are as near to what is behind a node of the line in which walls meet.
+// The face that is most in a point's way, and of those that are walls of a corner with it the one that the point is
+// least outside of: several triangles of each wall are as near to what is behind a node of the line in which walls meet.
 fn faced(number: u32, point: vec3<f32>) -> Faced {
     let hold = lists_hold();
     let starts = surface.list + number;
@@ -207,8 +207,7 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
                 if !both.first.there || is_more_in_way(facing, both.first) {
                     both.first = facing;
                 }
-            } else if is_corner(both.first, facing, point)
-                && (!both.second.there || is_more_in_way(facing, both.second)) {
+            } else if (!both.second.there || facing.gap < both.second.gap) && is_corner(both.first, facing, point) {
                 both.second = facing;
             }
         }
@@ -368,8 +367,7 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
         allowed = max(min(before + min(deeper, 0.0) + settling, 0.0), min(lowest, 0.0));
         meet(2u * point, point, place, both.first, first, allowed, slip, did);
         if both.second.there {
-            // of how it has slipped one face knows
-            meet(2u * point + 1u, point, place, both.second, second, allowed, vec3<f32>(0.0), did);
+            meet(2u * point + 1u, point, place, both.second, second, allowed, slip, did);
         }
     }
     for (var k = 0u; k < 3u; k++) {

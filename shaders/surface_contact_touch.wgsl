@@ -2,8 +2,8 @@
 // note_edges is in surface_touch_edges.wgsl, or generated.
 @group(0) @binding(0) var<storage, read_write> surface_touch: array<f32>;
 
-// Of the first face of a point slip is kept.
-fn note(contact: u32, at: u32, is_first: bool) {
+// Of two walls slip is kept of the first that a point touches, for along both it has slipped alike.
+fn note(contact: u32, at: u32, of_point: bool) {
     let pressing = number(contact, PRESSING);
     if !is_active(contact) || !(pressing > 0.0) {
         return;
@@ -11,7 +11,9 @@ fn note(contact: u32, at: u32, is_first: bool) {
     let slides = surface_contacts[CONTACT_WORDS * contact + SLIDING] == 1u;
     let normal = vector(contact, NORMAL);
     let after = relative(contact, NEXT);
-    if is_first {
+    let did = surface_touch[at + 4u];
+    let in_corner = select(0.0, IN_CORNER, did >= IN_CORNER);
+    if of_point && did - in_corner < STICKS {
         var slip = along_surface(vector(contact, SLIP) + after, normal);
         let bound = number(contact, FRICTION) * pressing * number(contact, YIELDS_ALONG);
         let size = length(slip);
@@ -19,7 +21,6 @@ fn note(contact: u32, at: u32, is_first: bool) {
         surface_touch[at] = slip.x;
         surface_touch[at + 1u] = slip.y;
         surface_touch[at + 2u] = slip.z;
-        let in_corner = select(0.0, IN_CORNER, surface_touch[at + 4u] >= IN_CORNER);
         surface_touch[at + 4u] = in_corner + select(STICKS, SLIDES, slides);
     }
     if surface.relaxed == 0u && slides {
@@ -36,6 +37,6 @@ fn surface_contact_touch(@builtin(global_invocation_id) id: vec3<u32>, @builtin(
     let point = surface.first + i;
     let at = touch_of(point);
     note(2u * point, at, true);
-    note(2u * point + 1u, at, false);
+    note(2u * point + 1u, at, true);
     note_edges(point, at);
 }

@@ -315,9 +315,9 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
         }
     }
 
-    /// What is in its way: where only one was seen, that it is turned away is all that is asked. Another one is the one
-    /// that is most in its way of all that are walls of a corner with the first: several triangles of each wall are as
-    /// near to what is behind a node of the line in which walls meet.
+    /// What is in its way: where only one was seen, that it is turned away is all that is asked. Another one is that of
+    /// all walls of a corner with the first which it is least outside of: several triangles of each wall are as near to
+    /// what is behind a node of the line in which walls meet, and of three walls none is left out for long.
     fn finish(mut self) -> [Option<Facing>; 2] {
         if let Some(only) = self.waiting.take() {
             let at_rim = self.surfaces.is_at_rim(self.now, &only, (self.edge)(only.triangle));
@@ -329,21 +329,16 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
             }
             self.ask(only);
         }
-        let Some((first, _)) = self.most(|_| true) else { return [None; 2] };
-        let is_wall = |other: &Facing| {
+        let first = self.faced.iter().copied().reduce(|most, other| {
+            let edge = self.of_both(&most.0, &other.0);
+            let [of_most, of_other] = [most, other].map(|(facing, turned)| in_way(&facing, turned, edge));
+            if of_other < of_most { other } else { most }
+        });
+        let Some((first, _)) = first else { return [None; 2] };
+        let walls = self.faced.iter().map(|(other, _)| *other).filter(|other| {
             self.surfaces.is_corner(self.now.places, self.point, [&first, other], self.of_both(&first, other))
-        };
-        [Some(first), self.most(is_wall).map(|(second, _)| second)]
-    }
-
-    /// The one of some that is most in its way, of such as are alike the first.
-    fn most(&self, is_meant: impl Fn(&Facing) -> bool) -> Option<(Facing, f64)> {
-        let meant = self.faced.iter().filter(|(facing, _)| is_meant(facing)).copied();
-        meant.reduce(|(most, of_most), (facing, turned)| {
-            let edge = self.of_both(&facing, &most);
-            let is_more = in_way(&facing, turned, edge) < in_way(&most, of_most, edge);
-            if is_more { (facing, turned) } else { (most, of_most) }
-        })
+        });
+        [Some(first), walls.reduce(|least, other| if other.gap < least.gap { other } else { least })]
     }
 
     /// The length of an edge of two bodies' faces, the smaller one, so that neither is favoured (m).

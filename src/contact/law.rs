@@ -41,10 +41,10 @@ pub struct Contact {
     pub slides: bool,
     /// Whether a spring presses: by the gap alone, whatever the step that is predicted.
     pub springs: bool,
-    /// What whoever made it knows of it: the number of the point, whether the face is its first, and how far it was
-    /// outside (m).
+    /// What whoever made it knows of it: the number of the point, whether that meets a face, and not an edge another,
+    /// and how far it was outside (m).
     pub point: u32,
-    pub is_first: bool,
+    pub of_point: bool,
     pub outside: f64,
     /// How far it yields to a force (m/N), with the shares of its nodes.
     yields: f64,
@@ -70,7 +70,7 @@ impl Contact {
             slides: true,
             springs: false,
             point: 0,
-            is_first: false,
+            of_point: false,
             outside: gap,
             yields: 0.0,
             yields_along: 0.0,

@@ -133,7 +133,7 @@ impl<T: Scalar> pulp::WithSimd for Foresee<'_, '_, T> {
 /// What is noted in a contact of who meets.
 struct Met {
     point: u32,
-    is_first: bool,
+    of_point: bool,
     outside: f64,
 }
 
@@ -201,7 +201,7 @@ impl Nodes<'_> {
         if ends < within {
             let mut contact = Contact::new(parts, (normal, gap, step), resists());
             (contact.springs, contact.point) = (spring.is_some(), of.point);
-            (contact.is_first, contact.outside) = (of.is_first, of.outside);
+            (contact.of_point, contact.outside) = (of.of_point, of.outside);
             batch.push(contact);
         }
     }
@@ -257,22 +257,22 @@ pub(super) fn gather<T: Scalar>(
         let sight = nodes.sight(contacts, of, first);
         // as it is kept
         let allowed = |faced: &[Outside]| T::from_f64(allowed(touch, faced, &in_step)).to_f64();
-        let mut meet = |sight: Sight<'_>, seen: &Seen, is_first: bool| {
-            nodes.meet((contacts, of_bodies), (sight, touch, is_first), seen, batch);
+        let mut meet = |sight: Sight<'_>, seen: &Seen| {
+            nodes.meet((contacts, of_bodies), (sight, touch), seen, batch);
         };
         match &faced.second {
             None => {
                 let (outside, allowed) = (sight.outside.now, allowed(&[sight.outside]));
                 seen.push(Seen { point, outside, allowed, in_corner: false });
-                meet(sight, &seen[seen.len() - 1], true);
+                meet(sight, &seen[seen.len() - 1]);
             }
             Some(second) => {
                 let other = nodes.sight(contacts, of, second);
                 let outside = sight.outside.now.min(other.outside.now);
                 let allowed = allowed(&[sight.outside, other.outside]);
                 seen.push(Seen { point, outside, allowed, in_corner: true });
-                meet(sight, &seen[seen.len() - 1], true);
-                meet(other, &seen[seen.len() - 1], false);
+                meet(sight, &seen[seen.len() - 1]);
+                meet(other, &seen[seen.len() - 1]);
             }
         }
     });
@@ -295,7 +295,7 @@ pub(super) fn gather<T: Scalar>(
         let gap = outside.max(-meeting.settling(clock));
         let [of_one, of_other] = &crossing.weights;
         // nodes are the first of the points
-        let met = Met { point: one.nodes[0], is_first: false, outside };
+        let met = Met { point: one.nodes[0], of_point: false, outside };
         nodes.add(
             last,
             nodes.between([(&one.nodes, of_one), (&other.nodes, of_other)]),
@@ -328,7 +328,7 @@ impl Nodes<'_> {
     fn meet<T: Scalar>(
         &self,
         (contacts, bodies): (&SurfaceContacts, &[BodySlices<'_, T>]),
-        (Sight { facing, parts, outside }, touch, is_first): (Sight<'_>, &[T], bool),
+        (Sight { facing, parts, outside }, touch): (Sight<'_>, &[T]),
         &Seen { point: number, allowed, .. }: &Seen,
         batch: &mut Vec<Contact>,
     ) {
@@ -338,8 +338,6 @@ impl Nodes<'_> {
             return;
         };
         let Meeting { friction, spring, edge, .. } = meeting;
-        // of how it has slipped one face knows
-        let slip = if is_first { vector_at(touch, 0) } else { DVec3::ZERO };
         let resists = || {
             let did = PointState::of(touch[4].to_f64()).did;
             let turned = contacts.turned(&meeting, (point, facing), bodies);
@@ -349,7 +347,7 @@ impl Nodes<'_> {
                 (before - facing.normal * facing.normal.dot(before)).length() <= STILL * edge
             };
             let is_held = did == Did::Sticks || did != Did::Slides && friction[0] != friction[1] && still();
-            (friction[usize::from(!is_held)], slip - turned)
+            (friction[usize::from(!is_held)], vector_at(touch, 0) - turned)
         };
         let within = if point.triangle.is_some() { SHARES * edge } else { 0.0 };
         let gap = (outside.now - allowed).max(-OUT * edge);
@@ -359,7 +357,10 @@ impl Nodes<'_> {
             (facing.normal, gap),
             resists,
             (spring, outside.now - allowed, within),
-            Met { point: number, is_first, outside: outside.now },
+            Met { point: number, of_point: true, outside: outside.now },
         );
     }
 }
+
+#[cfg(test)]
+mod tests;

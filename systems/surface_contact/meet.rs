@@ -6,7 +6,7 @@ use super::gather::{Gathered, InStep, gather};
 use super::{Meeting, Surface, SurfaceContacts};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
-use crate::contact::{ContactSet, Facing, Point, bilinear};
+use crate::contact::{Contact, ContactSet, Facing, Point, bilinear};
 use crate::math::Scalar;
 use glam::{DVec3, DVec4};
 use smallvec::SmallVec;
@@ -163,9 +163,8 @@ fn note_touches<T: Scalar>(
         let touch = bodies[kept.body].kept_mut(kept);
         let after = contact.outside + contact.normal.dot(contact.step);
         deepest = deepest.max(-after);
-        if contact.is_first {
-            set_vector(touch, 0, contact.slip);
-            note_state(touch, contact.slides);
+        if contact.of_point {
+            note_touch(touch, contact);
         }
         if counts_ways {
             touch[6] = T::from_f64(touch[6].to_f64() + contact.slid);
@@ -174,11 +173,15 @@ fn note_touches<T: Scalar>(
     contacts.surface.figures.deepest = deepest;
 }
 
-/// Notes that a point that faced something touches it.
-pub(super) fn note_state<T: Scalar>(touch: &mut [T], slides: bool) {
+/// Notes that a point that faced something touches it, and how far it has slipped elastically: of two walls the first
+/// that it touches, for along both it has slipped alike.
+pub(super) fn note_touch<T: Scalar>(touch: &mut [T], contact: &Contact) {
     let faced = PointState::of(touch[4].to_f64());
-    let did = if slides { Did::Slides } else { Did::Sticks };
-    touch[4] = T::from_f64(PointState { did, ..faced }.number());
+    if !faced.touched() {
+        let did = if contact.slides { Did::Slides } else { Did::Sticks };
+        set_vector(touch, 0, contact.slip);
+        touch[4] = T::from_f64(PointState { did, ..faced }.number());
+    }
 }
 
 /// Counts what contact takes of each node, with `work_factor` for each joule, by where that goes by now. Who acts on

@@ -3,7 +3,7 @@
 use super::SurfaceContacts;
 use super::body_slices::{BodySlices, Kept, set_vector, vector_at};
 use super::gather::{Gathered, SHARES};
-use super::meet::{forget, note_state, push, release};
+use super::meet::{forget, note_touch, push, release};
 use super::pairs::{Pair, What};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
@@ -176,7 +176,7 @@ fn add<T: Scalar>(
     (contact.pressing, contact.rubbing, contact.slides) = (press.pressing, rubbing.force, rubbing.slides);
     // what slides keeps as much elastic slip as its force is of
     contact.slip = if press.stiffness > 0.0 { -contact.rubbing / press.stiffness } else { DVec3::ZERO };
-    (contact.point, contact.is_first, contact.outside) = (point, what == What::First, gap + pair.allowed);
+    (contact.point, contact.of_point, contact.outside) = (point, what != What::Crossing, gap + pair.allowed);
     gathered.set.add(contact);
 }
 
@@ -199,11 +199,9 @@ fn note<T: Scalar>(
     }
     contacts.surface.figures.contacts += gathered.set.count() as u64;
     for contact in gathered.set.contacts() {
-        if contact.is_first {
+        if contact.of_point {
             let kept = contacts.kept(contact.point);
-            let touch = bodies[kept.body].kept_mut(kept);
-            set_vector(touch, 0, contact.slip);
-            note_state(touch, contact.slides);
+            note_touch(bodies[kept.body].kept_mut(kept), contact);
         }
         let deepest = &mut contacts.surface.figures.deepest;
         *deepest = deepest.max(-contact.outside);

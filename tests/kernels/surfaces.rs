@@ -49,10 +49,10 @@ fn world((bodies, who): (&str, &str), friction: f64, more: &str) -> Simulation {
     simulation
 }
 
-/// Some faced others, some stuck, some slid.
+/// Some faced others, some stuck, some slid; some in corners.
 fn stick(touch: &mut Reals) {
     for point in 0..touch.len() / MEETING_NUMBERS {
-        touch.set(MEETING_NUMBERS * point + 4, (point % 4) as f64);
+        touch.set(MEETING_NUMBERS * point + 4, (point % 8) as f64);
         touch.set(MEETING_NUMBERS * point, 1e-6);
     }
 }

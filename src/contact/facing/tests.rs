@@ -147,6 +147,42 @@ fn what_has_sunk_into_a_corner_is_borne_by_both_walls() {
     }
 }
 
+/// Before a node of the line in which walls meet several triangles of each are as near: whatever their order is, both
+/// walls are faced. One more of the second in its place would leave the first alone.
+#[test]
+fn before_a_node_of_the_line_both_walls_are_faced() {
+    let line = [(0.0, -1.0, 0.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)];
+    let walls = [(1.0, -1.0, 1.0), (1.0, 1.0, 1.0), (-1.0, -1.0, 1.0), (-1.0, 1.0, 1.0)];
+    let cone = [(0.005, 0.0, -0.1), (1.0, 0.0, 1.0), (-0.5, 1.0, 1.0), (-0.5, -1.0, 1.0)];
+    let places: Vec<DVec3> = line.into_iter().chain(walls).chain(cone).map(DVec3::from).collect();
+    let right = [[1, 0, 3], [1, 3, 4], [1, 4, 2]];
+    let left = [[1, 5, 0], [1, 6, 5], [1, 2, 6]];
+    let of_cone = [[7, 9, 8], [7, 10, 9], [7, 8, 10]];
+    for order in [[0, 1, 2, 3, 4, 5], [3, 4, 5, 0, 1, 2], [0, 3, 1, 4, 2, 5], [3, 0, 4, 1, 5, 2], [0, 3, 4, 1, 5, 2]] {
+        let all = [right, left].concat();
+        let triangles: Vec<[u32; 3]> = order.map(|i: usize| all[i]).into_iter().chain(of_cone).collect();
+        let surfaces = Surfaces::new(11, triangles, vec![0, 0, 0, 0, 0, 0, 1, 1, 1], vec![0.5; 9]);
+        let faced = faced(&surfaces, &places, &Point::node(1, 7), &[0, 1, 2, 3, 4, 5], |_| 0.2);
+        let normals = [faced.first, faced.second].map(|facing| facing.map(|facing| facing.normal.x.signum()));
+        // less deep in the left one, which is above the node by less
+        assert_eq!(normals, [Some(1.0), Some(-1.0)], "{order:?}: {faced:?}");
+    }
+}
+
+/// What is in a corner of three walls faces the one that it is least deep in, and the one that it is deepest in.
+#[test]
+fn of_three_walls_the_deepest_is_not_left_out() {
+    let o = (0.0, 0.0, 0.0);
+    let [x, y, z] = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)];
+    let cone = [(-0.01, -0.02, -0.03), (1.0, 1.0, 0.2), (0.2, 1.0, 1.0), (1.0, 0.2, 1.0)];
+    let places: Vec<DVec3> = [o, x, y, z].into_iter().chain(cone).map(DVec3::from).collect();
+    let triangles = vec![[0, 2, 3], [0, 3, 1], [0, 1, 2], [4, 6, 5], [4, 7, 6], [4, 5, 7]];
+    let surfaces = Surfaces::new(8, triangles, vec![0, 0, 0, 1, 1, 1], vec![0.5; 6]);
+    let faced = faced(&surfaces, &places, &Point::node(1, 4), &[0, 1, 2], |_| 0.2);
+    let gaps = [faced.first, faced.second].map(|facing| facing.map_or(f64::NAN, |facing| facing.gap));
+    assert!((gaps[0] + 0.01).abs() < 1e-12 && (gaps[1] + 0.03).abs() < 1e-12, "{faced:?}");
+}
+
 /// A floor and a slope beside it, up by 25° or down by 60°, and a point that looks straight down. In front of both it
 /// is kept away from the nearer, as by a thickness; inside both it comes out of the one that it faces more.
 #[test]
