@@ -1,11 +1,12 @@
 //! Points of bodies that something is attached to.
 
-use super::BodyParts;
 use super::contacts::edge;
+use super::{Assembly, BodyParts};
 use crate::components::Anchor;
 use crate::math::coordinates;
-use crate::mesh::{Locator, OnTriangle};
+use crate::mesh::{Locator, Mesh, OnTriangle};
 use crate::scene::diagnostic::Diagnostics;
+use crate::scene::schema::InitialState;
 use crate::skins::Embedding;
 use glam::DVec3;
 
@@ -47,8 +48,18 @@ pub(super) fn nearest(
     best
 }
 
-/// What a point of the scene is of a body at rest: itself where the body is, else the nearest place of its surface, no
-/// farther than an edge of a face. Gives where that is, too (m).
+/// Whether some body begins elsewhere than where its mesh has it: deformed by a `start` of its own, or in a rest shape
+/// that is another one, without rest being sought first.
+pub(super) fn begin_elsewhere(assembly: &Assembly<'_>) -> bool {
+    let scene = &assembly.scene.scene;
+    let deformed = scene.bodies.values().any(|body| body.start.is_some());
+    let at_rest = || assembly.bodies.values().any(|body| body.placed.is_shown_elsewhere());
+    !scene.is_static() && (deformed || scene.start == InitialState::Undeformed && at_rest())
+}
+
+/// What a point of the scene is of a body where its mesh has it: itself where the body is, else the nearest place of
+/// its surface, no farther than an edge of a face. It goes with the body as material, so also to its rest shape where
+/// that is another one. Gives where it is in the mesh, too (m).
 pub(super) fn anchor(
     name: &str,
     body: &BodyParts,
@@ -62,7 +73,8 @@ pub(super) fn anchor(
             .note("only a body without `copies` can be sutured, tied or glued");
         return None;
     }
-    let mesh = &body.placed.mesh;
+    let shown = body.placed.as_shown();
+    let mesh: &Mesh = &shown;
     let mut place = at;
     if Locator::new(mesh).holds(at).is_none() {
         let found = nearest((body, &mesh.points), at, &|_| true)?;

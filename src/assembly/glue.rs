@@ -1,8 +1,9 @@
 //! Ties and glue: points and nodes become weights on faces.
 
 mod joints;
+mod rest_shapes;
 
-use super::anchors::{OnSurface, TOUCHES, anchor, nearest};
+use super::anchors::{OnSurface, TOUCHES, anchor, begin_elsewhere, nearest};
 use super::contacts::{bounds, edge, reference};
 use super::loads::corners_of;
 use super::sutures::at_start;
@@ -16,15 +17,15 @@ use joints::Joints;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-/// What counts where bodies begin deformed.
-const AT_START: &str = "it counts where bodies are at the start, which their `start` tells";
+/// What counts where bodies begin elsewhere than where their meshes have them.
+const AT_START: &str = "it counts where bodies are at the start, which their `start` or `rest_shape` tells";
 
 /// What is made of the attachments so far.
 struct Gluing<'a> {
     assembly: &'a Assembly<'a>,
     world: &'a World,
-    /// Whether bodies begin deformed.
-    deformed: bool,
+    /// Whether bodies begin elsewhere than where their meshes have them.
+    elsewhere: bool,
     /// Where the nodes of each body are at the start (m).
     points: &'a [Cow<'a, [DVec3]>],
     glue: Glue,
@@ -43,43 +44,38 @@ struct Placed<'a> {
     points: &'a [DVec3],
 }
 
-/// Spawns all ties, single ones and those of surfaces that are glued. What begins deformed is not there yet: it waits
-/// for [`spawn_deformed`].
+/// Spawns all ties, single ones and those of surfaces that are glued, as meshes have bodies. What begins elsewhere is
+/// not there yet: it waits for [`spawn_elsewhere`].
 pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
-    if !begin_deformed(assembly) {
+    if !begin_elsewhere(assembly) {
         spawn_ties(assembly, false, world, diagnostics);
     }
 }
 
-/// The same where bodies begin deformed, as they are by now.
-pub(super) fn spawn_deformed(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
-    if begin_deformed(assembly) {
+/// The same where bodies begin elsewhere, as they are by now.
+pub(super) fn spawn_elsewhere(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
+    if begin_elsewhere(assembly) {
         spawn_ties(assembly, true, world, diagnostics);
     }
 }
 
-/// Whether some body begins elsewhere than at rest.
-fn begin_deformed(assembly: &Assembly<'_>) -> bool {
-    let scene = &assembly.scene.scene;
-    !scene.is_static() && scene.bodies.values().any(|body| body.start.is_some())
-}
-
-/// Where the nodes of a body are at the start (m).
-pub(super) fn points_of<'a>(body: &'a BodyParts, deformed: bool, world: &World) -> Cow<'a, [DVec3]> {
-    let rest: &[DVec3] = &body.placed.mesh.points;
-    match world.get::<Displacement>(body.entity).filter(|_| deformed) {
+/// Where the nodes of a body are (m): in its mesh, or as they are by now.
+pub(super) fn points_of<'a>(body: &'a BodyParts, by_now: bool, world: &World) -> Cow<'a, [DVec3]> {
+    let rest = &body.placed.mesh.points;
+    match world.get::<Displacement>(body.entity).filter(|_| by_now) {
         Some(u) => rest.iter().zip(&body.node_rows).map(|(at, &row)| *at + u.vector(row as usize)).collect(),
-        None => Cow::Borrowed(rest),
+        None => Cow::Borrowed(body.placed.points()),
     }
 }
 
-fn spawn_ties(assembly: &Assembly<'_>, deformed: bool, world: &mut World, diagnostics: &mut Diagnostics) {
-    let points: Vec<Cow<'_, [DVec3]>> = assembly.bodies.values().map(|body| points_of(body, deformed, world)).collect();
+fn spawn_ties(assembly: &Assembly<'_>, elsewhere: bool, world: &mut World, diagnostics: &mut Diagnostics) {
+    let points: Vec<Cow<'_, [DVec3]>> =
+        assembly.bodies.values().map(|body| points_of(body, elsewhere, world)).collect();
     let bodies = assembly.bodies.values().map(|body| body.entity).collect();
     let corners: Vec<DVec3> =
         assembly.bodies.values().flat_map(|body| <[DVec3; 2]>::from(bounds(&body.placed.mesh.points))).collect();
     let glue = Glue { bodies, sweeps: 1, reference: reference(&corners), ..Glue::default() };
-    let mut gluing = Gluing { assembly, world, deformed, points: &points, glue, counts: BTreeMap::new() };
+    let mut gluing = Gluing { assembly, world, elsewhere, points: &points, glue, counts: BTreeMap::new() };
     for (number, attachment) in assembly.scene.scene.attachments.iter().enumerate() {
         match attachment {
             Attachment::Tie { from, to, strength, .. } => {
@@ -98,6 +94,9 @@ fn spawn_ties(assembly: &Assembly<'_>, deformed: bool, world: &mut World, diagno
         return;
     }
     between_led_nodes(&glue, world, diagnostics);
+    if !elsewhere {
+        rest_shapes::check(assembly, &glue, world, diagnostics);
+    }
     for (body, count) in counts {
         let state = TieState(Reals::zeros(assembly.precision, TIE_NUMBERS * count));
         world.entity_mut(glue.bodies[body]).insert(state);
@@ -133,9 +132,9 @@ impl<'a> Gluing<'a> {
         Some(Placed { place, name, body, points })
     }
 
-    /// Where something is at the start that is at a place at rest (m).
+    /// Where something is at the start that is at a place in the mesh (m).
     fn begins(&self, anchor: &Anchor, at: DVec3) -> DVec3 {
-        if self.deformed { at_start(anchor, DVec3::ZERO, self.world) } else { at }
+        if self.elsewhere { at_start(anchor, DVec3::ZERO, self.world) } else { at }
     }
 
     fn push(&mut self, point: usize, tie: TiedPoint) {
@@ -161,7 +160,7 @@ impl<'a> Gluing<'a> {
                 .note(format!(
                     "a tie holds what touches, or nearly: up to an edge of a face, {most:.3e} m; a `Suture` pulls"
                 ))
-                .notes(self.deformed.then(|| AT_START.to_string()));
+                .notes(self.elsewhere.then(|| AT_START.to_string()));
             return;
         }
         let tie = tied([of, onto], point.nodes, &found, at, (strength, number, None));
@@ -230,7 +229,7 @@ impl<'a> Gluing<'a> {
             if closest.is_finite() {
                 told.note(format!("the nearest node is {closest:.3e} m off, and `reach` is {reach:.3e} m"));
             }
-            if self.deformed {
+            if self.elsewhere {
                 told.note(AT_START);
             }
             if joints.is_some() {

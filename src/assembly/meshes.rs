@@ -5,6 +5,7 @@ use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Body, MeshSource, Select};
 use glam::DVec3;
+use std::borrow::Cow;
 use std::sync::OnceLock;
 
 /// A mesh where the author wants it, with its surface when somebody asks for it.
@@ -25,6 +26,21 @@ impl PlacedMesh {
     /// Where points are (m) in the shape in which selections are made: that of the scene's mesh.
     pub fn points(&self) -> &[DVec3] {
         self.shown.as_ref().unwrap_or(&self.mesh.points)
+    }
+
+    /// Whether selections are made in another shape than that at rest.
+    pub(super) fn is_shown_elsewhere(&self) -> bool {
+        self.shown.is_some()
+    }
+
+    /// Points and elements in the shape in which selections are made; of the whole mesh where that is the one at rest.
+    pub(super) fn as_shown(&self) -> Cow<'_, Mesh> {
+        match &self.shown {
+            None => Cow::Borrowed(&self.mesh),
+            Some(points) => {
+                Cow::Owned(Mesh { points: points.clone(), cells: self.mesh.cells.clone(), ..Mesh::default() })
+            }
+        }
     }
 
     /// The lowest and the largest coordinates there (m).

@@ -32,6 +32,7 @@ mod sutures;
 mod time_step;
 mod tool_looks;
 mod tool_overlaps;
+mod tool_pace;
 mod tool_removal;
 mod user_laws;
 
@@ -126,7 +127,7 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     observation::spawn(assembly, world, diagnostics);
     insert_laws(assembly.precision, world);
     start::deform(assembly, world, diagnostics);
-    glue::spawn_deformed(assembly, world, diagnostics);
+    glue::spawn_elsewhere(assembly, world, diagnostics);
     // turning is about where bodies are then
     body_columns::start(assembly, world);
     let begin_inside = [
@@ -138,7 +139,7 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
         world.insert_resource(BeginsInside);
     }
     grasps::check(assembly, world, diagnostics);
-    sutures::measure(world, diagnostics);
+    sutures::measure(assembly, world, diagnostics);
     let scene = &assembly.scene.scene;
     if scene.when_unstable() == schema::WhenUnstable::Remove && !scene.is_static() {
         let blocks = assembly.bodies.values().flat_map(|body| &body.blocks);
@@ -146,6 +147,7 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     }
     suction::spawn(assembly, world, diagnostics);
     tool_looks::insert(assembly, world);
+    tool_pace::check(assembly, world, diagnostics);
     contacts::spawn_idle(assembly, world);
     if scene.is_static() {
         relaxation::insert_inertial_masses(assembly, world);

@@ -26,7 +26,15 @@ pub(super) fn insert(
     let described = &assembly.scene.scene.bodies[name];
     let Some(file) = &described.skin else { return };
     match surface(assembly, described, file) {
-        Ok(surface) => {
+        Ok(mut surface) => {
+            if turn_outwards(&mut surface) {
+                diagnostics
+                    .warn_at(
+                        format!("bodies.\"{name}\".skin.file").as_str(),
+                        format!("{}: the surface was inside out, and was turned round", file.file),
+                    )
+                    .note("let corners of triangles go round against the clock as seen from outside");
+            }
             fits(name, (&surface.points, placed.points()), diagnostics);
             let mesh = Mesh { points: placed.points().to_vec(), cells: placed.mesh.cells.clone(), ..Mesh::default() };
             let mut body = world.entity_mut(body);
@@ -37,6 +45,17 @@ pub(super) fn insert(
             diagnostics.error_at(format!("bodies.\"{name}\".skin.file").as_str(), message);
         }
     }
+}
+
+/// Turns a closed surface round that is inside out, so that normals go outwards; whether it was. Of an open one nobody
+/// knows.
+fn turn_outwards(surface: &mut Triangles) -> bool {
+    let turns = surface.volume() < 0.0 && surface.edges().is_ok();
+    if turns {
+        surface.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+        surface.texture.iter_mut().for_each(|corners| corners.swap(1, 2));
+    }
+    turns
 }
 
 /// Warns of a skin that cannot be that of its body, as one in millimetres.

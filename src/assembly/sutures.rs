@@ -1,8 +1,8 @@
 //! Sutures: points become weights of nodes.
 
-use super::Assembly;
-use super::anchors::anchor;
+use super::anchors::{anchor, begin_elsewhere};
 use super::contacts::{bounds, reference};
+use super::{Assembly, BodyParts};
 use crate::components::*;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::Attachment;
@@ -72,11 +72,11 @@ fn insert_rows(assembly: &Assembly<'_>, sutures: &Sutures, world: &mut World) {
 }
 
 /// Finds how long sutures are, where the scene leaves it to how far their points are apart at the start.
-pub(super) fn measure(world: &mut World, diagnostics: &mut Diagnostics) {
+pub(super) fn measure(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
     let Some(mut sutures) = world.remove_resource::<Sutures>() else { return };
     let reference = sutures.reference;
     for suture in &mut sutures.all {
-        let [from, to] = [0, 1].map(|end| at_start(&suture.ends[end], reference, world));
+        let [from, to] = [0, 1].map(|end| begins(&suture.ends[end], assembly, reference, world));
         let length = from.distance(to);
         if length <= 1e-12 * (from.length() + to.length()) {
             diagnostics
@@ -103,7 +103,20 @@ pub(super) fn measure(world: &mut World, diagnostics: &mut Diagnostics) {
     world.insert_resource(sutures);
 }
 
-/// Where an end is at the start (m, from a reference).
+/// Where an end begins (m, from a reference): of a body that is brought from its rest shape to where its mesh has it
+/// before the first step, there.
+fn begins(end: &Anchor, assembly: &Assembly<'_>, reference: DVec3, world: &World) -> DVec3 {
+    let brought = |body: &&BodyParts| body.entity == end.body && body.placed.is_shown_elsewhere();
+    let Some(body) = assembly.bodies.values().find(brought).filter(|_| !begin_elsewhere(assembly)) else {
+        return at_start(end, reference, world);
+    };
+    let points = body.placed.points();
+    let node = |row: u32| body.node_rows.iter().position(|&own| own == row);
+    let of = |&(row, weight): &(u32, f64)| weight * (node(row).map_or(reference, |node| points[node]) - reference);
+    end.nodes.iter().map(of).sum()
+}
+
+/// Where an end is (m, from a reference) before anything is brought to rest.
 pub(super) fn at_start(end: &Anchor, reference: DVec3, world: &World) -> DVec3 {
     let (Some(rest), Some(u)) = (world.get::<RestPosition>(end.body), world.get::<Displacement>(end.body)) else {
         return DVec3::ZERO;

@@ -7,7 +7,7 @@ use crate::systems::criterion_steps;
 use bevy_ecs::prelude::*;
 
 /// From one look to the next a mouth goes no farther than this part of how far it reaches, as far as the scene tells.
-const FARTHEST: f64 = 0.5;
+pub(super) const FARTHEST: f64 = 0.5;
 
 /// Chooses it by the fastest mouth: as often as criteria are looked at, oftener where a mouth would leave gaps, in
 /// every step at most. In a static analysis all goes by and by.
@@ -32,7 +32,7 @@ pub(super) fn insert(assembly: &Assembly<'_>, world: &mut World) {
 
 /// How far the middle of what takes elements is from the tool's origin, and how far from there it takes them at least
 /// (both m). A disc is about the origin.
-fn reach_of(removal: &ToolRemoval) -> (f64, f64) {
+pub(super) fn reach_of(removal: &ToolRemoval) -> (f64, f64) {
     let (arm, inside) = match &removal.mouth {
         Mouth::Disc(_) => (0.0, 0.0),
         Mouth::Tool(solid) => {

@@ -46,6 +46,7 @@ pub(super) fn add(assembly: &Assembly<'_>, body: &BodyParts, marks: &[bool], whe
     let mut signals = world.resource_mut::<Signals>();
     let pose = signals.add(Signal::Pose { motion: motion(tool), reference: removals.reference });
     let amplitude = DVec3::X * rate.unwrap_or(1.0);
+    let fastest = rate.unwrap_or(0.0) * curve.range()[1].max(0.0);
     let rate = signals.add(Signal::Load { curve: curve.clone(), amplitude });
     let threshold = threshold.map(|threshold| match threshold {
         Threshold::StretchAbove(limit) => (Measure::Stretch, limit),
@@ -62,7 +63,19 @@ pub(super) fn add(assembly: &Assembly<'_>, body: &BodyParts, marks: &[bool], whe
         }
     }
     let (tool, reach, burst) = (name.clone(), *reach, *burst);
-    removals.all.push(ToolRemoval { tool, mouth, reach, pose, rate, threshold, crumb, burst, largest, numbers });
+    removals.all.push(ToolRemoval {
+        tool,
+        mouth,
+        reach,
+        pose,
+        rate,
+        fastest,
+        threshold,
+        crumb,
+        burst,
+        largest,
+        numbers,
+    });
     let intake = Reals::zeros(assembly.precision, INTAKE_NUMBERS * removals.all.len());
     let list = vec![0; removals.words(body.element_rows.len())];
     world.entity_mut(body.entity).insert((removals, ToolIntake(intake), ToolReach(list)));
@@ -83,7 +96,7 @@ fn mean_volume(body: &BodyParts, world: &World) -> f64 {
 }
 
 /// Volume at rest of the element of a block's place and a row (m³).
-fn volume(body: &BodyParts, (block, row): (u32, u32), world: &World) -> f64 {
+pub(super) fn volume(body: &BodyParts, (block, row): (u32, u32), world: &World) -> f64 {
     let block = body.blocks[block as usize];
     let parts = world.get::<Block>(block).zip(world.get::<RestShape>(block));
     parts.map_or(0.0, |(block, shape)| rest_volume(block, row as usize, shape))

@@ -42,6 +42,7 @@ pub(super) fn read(world: &World, name: &str) -> Option<ToolReading> {
         suction: DVec3::ZERO,
         work: clock.relaxation.is_none().then_some(-state.contact_work),
         loss: clock.relaxation.is_none().then(|| lost(world, tool, state)),
+        waiting: 0.0,
         free: Some(free),
     })
 }

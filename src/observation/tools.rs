@@ -28,6 +28,9 @@ pub struct ToolReading {
     pub work: Option<f64>,
     /// What of this work impact, friction and catching nodes have taken (J); none in a static analysis, likewise.
     pub loss: Option<f64>,
+    /// The volume (m³) that it has taken in at a rate and that waits to go, as `burst` lets no more elements go at a
+    /// time; 0 where no more waits than the largest of them and what it takes in from one look to the next.
+    pub waiting: f64,
     /// Of one that moves freely, how.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub free: Option<FreeReading>,
@@ -78,6 +81,7 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
         DisplacementIncrement::NAME,
         SuctionMarks::NAME,
         SuctionPressure::NAME,
+        ToolIntake::NAME,
     ];
     bring_to_host(world, |_, name| wanted.contains(&name))?;
     if let Some(reading) = super::free_tools::read(world, tool) {
@@ -132,7 +136,27 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
         }
     }
     super::grasps::read(world, tool, &now, &mut reading);
+    reading.waiting = waiting(world, tool);
     Ok(reading)
+}
+
+/// What a tool has taken in (m³) beyond what waits for an element to be whole, and for the next look.
+fn waiting(world: &mut World, tool: &str) -> f64 {
+    let clock = *world.resource::<Clock>();
+    let step = clock.time_step.max(clock.before);
+    let look = world.get_resource::<ToolLooks>().map_or(0.0, |looks| looks.0 as f64 * step);
+    let mut sum = 0.0;
+    for (removals, intake) in world.query::<(&ToolRemovals, &ToolIntake)>().iter(world) {
+        let of_tool = removals.all.iter().enumerate().filter(|(_, removal)| removal.tool == tool);
+        for (number, removal) in of_tool.filter(|(_, removal)| removal.threshold.is_none()) {
+            let input = world.resource::<Signals>().largest_input(removal.rate);
+            let usual = removal.largest + input * removal.fastest * look;
+            // rounding of what just fits is none that waits
+            let more = intake.get(INTAKE_NUMBERS * number) - usual * (1.0 + 1e-3);
+            sum += more.max(0.0);
+        }
+    }
+    sum
 }
 
 /// Where a tool's origin is (m) and how it is turned (axis times angle, degrees), or the velocity of its origin (m/s)

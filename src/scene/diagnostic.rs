@@ -236,6 +236,18 @@ impl Diagnostics {
         self.list.iter().any(told)
     }
 
+    /// Whether a part of the scene brings what is at a path.
+    #[doc(hidden)]
+    pub fn is_of_part(&self, path: impl Into<Path>) -> bool {
+        let Some(tree) = self.tree.as_ref() else { return false };
+        let (path, parts): (Path, Path) = (path.into(), Path::default().name("parts"));
+        // the text of what a part holds stands where the part does
+        match (path.find(&tree.root), parts.find(&tree.root)) {
+            (Ok(node), Ok(parts)) => parts.span.start <= node.span.start && node.span.end <= parts.span.end,
+            _ => false,
+        }
+    }
+
     fn span(&self, path: &Path) -> Option<Span> {
         let tree = self.tree.as_ref()?;
         let span = path.span(&tree.root);

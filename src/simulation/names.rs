@@ -158,6 +158,7 @@ pub const UNITS: &[(&str, &str)] = &[
     ("tools.*.penetration", "m"),
     ("tools.*.work", "J"),
     ("tools.*.loss", "J"),
+    ("tools.*.waiting", "m³"),
     ("tools.*.free.mass", "kg"),
     ("tools.*.free.center", "m"),
     ("tools.*.free.velocity", "m/s"),

@@ -123,9 +123,11 @@ impl Skin {
         &self.now
     }
 
-    /// Where the points are (m) when the nodes are there, in the author's order.
+    /// Where the points are (m) when the nodes are there, in the author's order. Where no element lives any more they
+    /// are where all elements had them: with nodes that stay where they were last they do not go anywhere.
     pub fn places(&self, nodes: &[DVec3]) -> Vec<DVec3> {
-        self.now.places(&self.mesh, nodes)
+        let carried = if self.alive.contains(&true) { &self.now } else { &self.whole };
+        carried.places(&self.mesh, nodes)
     }
 
     /// What the points have of a field of the nodes, in the author's order.

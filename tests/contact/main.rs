@@ -49,6 +49,7 @@ mod quiet_books;
 mod rest;
 mod rims;
 mod rounded_places;
+mod scanned;
 mod spring_starts;
 mod static_friction;
 mod stiffer_springs;

@@ -39,6 +39,7 @@ fn tools(world: &mut World, volume: f64, rate: f64, burst: u32) {
                 reach: 0.012,
                 pose,
                 rate,
+                fastest: 0.0,
                 threshold: None,
                 crumb: 0.0,
                 burst,

@@ -184,7 +184,7 @@ fn points_whose_element_has_gone_go_with_the_nearest_that_lives() {
         }
         skin.update_alive(vec![false; mesh.element_count()]);
         assert!(skin.triangles().is_empty());
-        assert!(skin.places(&mesh.points).iter().all(|place| place.is_finite()));
+        assert_eq!(skin.places(&mesh.points), whole.places(&mesh, &mesh.points), "{kind:?}: not at the origin");
     }
 }
 
@@ -310,4 +310,28 @@ fn ply_files_are_read_in_all_their_forms_and_cut_short_ones_refused() {
     ] {
         assert!(told(from, to).contains(expected), "{to}: {}", told(from, to));
     }
+}
+
+/// A polygon whose points follow it: one that is not convex does not fold, one that crosses itself is refused.
+#[test]
+fn polygons_of_ply_files_do_not_fold() {
+    let read = |corners: &str| {
+        let text = format!(
+            "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 6\n\
+             property float x\nproperty float y\nproperty float z\nend_header\n{corners}\n\
+             0 0 0\n8 0 0\n8 3 0\n3 3 0\n3 9 0\n0 9 0\n"
+        );
+        Triangles::from_bytes("l.ply", text.as_bytes())
+    };
+    for corners in ["6 5 4 3 2 1 0", "6 3 2 1 0 5 4", "6 2 1 0 5 4 3"] {
+        let read = read(corners).unwrap();
+        let normals = (0..read.triangles.len()).map(|triangle| {
+            let [a, b, c] = read.corners(triangle);
+            (b - a).cross(c - a).z
+        });
+        let (all, positive) = (normals.clone().sum::<f64>(), normals.filter(|z| *z > 0.0).count());
+        assert_eq!((read.triangles.len(), all, positive), (4, -84.0, 0), "{corners}");
+    }
+    let error = read("4 0 2 1 5").unwrap_err().to_string();
+    assert!(error.contains("face 0, counted from 0, crosses itself"), "{error}");
 }

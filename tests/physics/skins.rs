@@ -97,6 +97,72 @@ fn a_skin_has_holes_where_elements_went_and_is_the_same_from_a_snapshot_on() {
     }
 }
 
+/// They were written at the origin, 1 m off.
+#[test]
+fn points_stay_where_they_were_when_all_of_the_body_has_gone() {
+    let more = "constraints: [Fixed(on: Set(\"z0\"))], loads: [Gravity(acceleration: (3, 0, -9.81))],
+        removal: [(when: At(0.03))], output: (fields_every: 0.01)";
+    for run in cpu_and_long_gpu() {
+        let mut simulation = start(&run, &scene("Tet4", more));
+        simulation.advance_to(0.025).unwrap();
+        let before = simulation.skin("b").unwrap();
+        simulation.finish().unwrap();
+        let after = simulation.skin("b").unwrap();
+        assert!(after.triangles.is_empty() && after.elements.iter().all(|element| *element == -1), "{}", run.name);
+        let way = before.points.iter().zip(&after.points).map(|(before, after)| before.distance(*after));
+        let farthest = way.fold(0.0, f64::max);
+        assert!(farthest < 2e-3, "{}: {farthest} m from where they were 5 ms before", run.name);
+        assert_eq!(after.rest, before.rest, "{}", run.name);
+    }
+}
+
+/// A pyramid whose corners go round with the clock; without its base nobody knows what is outside.
+#[test]
+fn a_closed_skin_that_is_inside_out_is_turned_round_and_told_of() {
+    let corners = "v 0 0 0\nvt 0 0\nv 20 0 0\nvt 1 0\nv 0 20 0\nvt 0 1\nv 0 0 10\nvt 1 1\n";
+    let round = ["1 3 2", "1 2 4", "2 3 4", "3 1 4"];
+    let skin = |faces: &[&str], inside_out: bool| {
+        let face = |face: &&str| {
+            let mut rows: Vec<String> = face.split(' ').map(|row| format!("{row}/{row}")).collect();
+            if inside_out {
+                rows.reverse();
+            }
+            format!("f {}\n", rows.join(" "))
+        };
+        let text = corners.to_string() + &faces.iter().map(face).collect::<String>();
+        let scene = format!(
+            "(duration: 1, bodies: {{\"b\": (mesh: Box(size: (20, 20, 10), cells: (2, 2, 1)), scale: 1e-3,
+                material: \"m\", skin: (file: \"s.obj\"))}},
+            materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.4))}})",
+        );
+        let files = BTreeMap::from([("s.obj".to_string(), text.into_bytes())]);
+        let file = SceneFile::from_memory("s.ron", &scene, files, &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
+        let mut simulation = start(&configurations()[0], &file);
+        let skin = simulation.skin("b").unwrap();
+        (skin, simulation.warnings().render(false).contains("s.obj: the surface was inside out, and was turned round"))
+    };
+    let (plain, told) = skin(&round, false);
+    assert!(!told);
+    let (turned, told) = skin(&round, true);
+    assert!(told);
+    let of_corner = |at: DVec3| -> [f32; 2] {
+        match at.to_array().map(|place| place > 5e-3) {
+            [true, ..] => [1.0, 0.0],
+            [_, true, _] => [0.0, 1.0],
+            [.., true] => [1.0, 1.0],
+            _ => [0.0, 0.0],
+        }
+    };
+    for state in [&plain, &turned] {
+        assert_eq!((state.points.len(), state.triangles.len()), (4, 4));
+        let at = state.points.iter().position(|point| point.length() < 1e-9).unwrap();
+        near("normal", state.normals[at].dot(DVec3::new(-1.0, -1.0, -2.0).normalize()), 1.0, 1.0, 1e-9);
+        assert!(state.points.iter().zip(&state.texture).all(|(at, texture)| *texture == of_corner(*at)), "{state:?}");
+    }
+    let (_, told) = skin(&round[1..], true);
+    assert!(!told, "of an open one nobody knows");
+}
+
 #[test]
 fn a_run_writes_a_series_of_each_skin() {
     let folder = tempfile::tempdir().unwrap();

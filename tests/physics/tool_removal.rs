@@ -219,6 +219,26 @@ fn what_was_tissue_is_not_lost_where_a_tool_leaves_it() {
     }
 }
 
+/// What `burst` keeps back waits, and is told of.
+#[test]
+fn what_waits_for_its_burst_is_told() {
+    let path = "(t: 0, at: (0.02, 0.005, 0.01))";
+    for run in cpu_and_long_gpu() {
+        let of = |burst: u32| {
+            let takes = format!("reach: 5e-3, rate: 3e-5, burst: {burst}");
+            let mut simulation = run.start(&passed(path, &takes));
+            simulation.advance(200).unwrap();
+            (gone(&mut simulation), simulation.tool("tip").unwrap().waiting)
+        };
+        let (gone, waiting) = of(1);
+        // in the first step nobody has looked yet; a cell that is not whole and ten steps are no matter of `burst`
+        let (taken, usual) = (199.0 * 2e-4 * 3e-5, CELL + 10.0 * 2e-4 * 3e-5);
+        near(run.name, waiting, taken - gone - usual, taken, 1e-3);
+        assert!(gone < 0.3 * taken, "{}: {gone} of {taken}", run.name);
+        assert_eq!(of(64).1, 0.0, "{}", run.name);
+    }
+}
+
 /// A rate below 0 is none: what it would have given back is not taken in again before the next cell goes.
 #[test]
 fn a_rate_below_zero_gives_nothing_back() {

@@ -37,6 +37,56 @@ fn a_misspelt_load_of_a_part_is_told_of_as_that_alone() {
     assert!(!told.contains("gravity") && told.lines().count() == 1, "{told}");
 }
 
+/// What an instrument does cannot name a body outside of it: of several it is told where they can be named.
+#[test]
+fn instruments_among_several_bodies_are_told_where_these_are_named() {
+    let bodies = r#"bodies: {"c": BODY, "d": BODY},
+        materials: {"m": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.4))},
+        parts: {"i": (scene: "hook.ron")}"#
+        .replace("BODY", r#"(mesh: Box(size: (1, 1, 1), cells: (2, 2, 2)), material: "m")"#);
+    let whole = format!("(duration: 1, {bodies})");
+    let hook = |body: &str| {
+        let hook = r#"(tools: {"tip": (shape: Sphere(radius: 0.3), at: (0, 0, 2))},
+            contacts: [Tool(tool: "tip"BODY)], suction: [(tool: "tip"BODY, pressure: 10, bore: 0.1, reach: 0.2)],
+            removal: [(when: InTool(tool: "tip", reach: 0.1, rate: 1e-3)BODY)])"#;
+        hook.replace("BODY", body)
+    };
+    let told =
+        |whole: &str, hook: &str, head: &str| brief(whole, files_of(&[("hook.ron", hook), ("head.ron", head)]), &[]);
+    let all = |told: &str, [what, tool, body]: [&str; 3]| {
+        let note = "no part names a body outside of it: leave this entry out of the part, and write it in the \
+                    scene around";
+        let entries = [
+            format!("Tool(tool: \"{tool}\", body: \"{body}\")"),
+            format!("(tool: \"{tool}\", body: \"{body}\", ...)"),
+            format!("(body: \"{body}\", when: InTool(tool: \"{tool}\", ...))"),
+        ];
+        let has = |entry: &String| {
+            let expected = format!(": error: {what} | {note} | there: {entry}; bodies: ");
+            told.lines().any(|line| line.starts_with("hook.ron:") && line.contains(&expected))
+        };
+        assert!(entries.iter().all(has) && told.lines().count() == 3, "{told}");
+    };
+    all(&told(&whole, &hook(""), ""), ["which body? The scene has 2", "i.tip", "c"]);
+    all(&told(&whole, &hook(", body: \"d\""), ""), ["there is no body `i.d`", "i.tip", "d"]);
+    // as it says
+    let alone = r#"(tools: {"tip": (shape: Sphere(radius: 0.3), at: (0, 0, 2))})"#;
+    let around = whole.replace("(duration: 1,", r#"(duration: 1, contacts: [Tool(tool: "i.tip", body: "c")],"#);
+    assert_eq!(told(&around, alone, ""), "");
+    // in a part of a part
+    let (outer, head) = (r#"(duration: 1, parts: {"head": (scene: "head.ron")})"#, format!("({bodies})"));
+    all(&told(outer, &hook(", body: \"d\""), &head), ["there is no body `head.i.d`", "head.i.tip", "head.d"]);
+    let said = told(outer, &hook(""), &head);
+    let expected = "which body? The part `head` has 2 | `body` is one of: c, d; a part of it names none of them: leave \
+                    the entry out there, and write it in the part `head`, of `i.tip`";
+    let count = said.lines().filter(|line| line.starts_with("hook.ron:") && line.contains(expected)).count();
+    assert!(count == 3 && said.lines().count() == 3, "{said}");
+    // who has no part around it names it where it stands
+    let own = whole.replace("(duration: 1,", r#"(duration: 1, contacts: [Tool(tool: "i.tip")],"#);
+    let said = told(&own, alone, "");
+    assert!(said.contains("which body? The scene has 2 | needs `body` | bodies: c, d"), "{said}");
+}
+
 #[test]
 fn ports_of_parts_are_named_as_all_else_in_them() {
     let whole = r#"(duration: 1,

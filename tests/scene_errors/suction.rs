@@ -127,6 +127,99 @@ fn what_copies_would_share_is_refused() {
     assert_eq!(taken("threshold: StretchAbove(1.5)"), "");
 }
 
+/// There are 384 elements of 2.604 cm³. Explicit steps look in every tenth what is in reach, implicit ones in each.
+#[test]
+fn a_rate_that_a_burst_starves_is_told() {
+    let takes = |steps: &str, fields: &str| {
+        told(ROD, "", &format!("{steps}, removal: [(when: InTool(tool: \"rod\", reach: 0.1, {fields}))],"))
+    };
+    let explicit = "integration: (step: 1e-4)";
+    let said = takes(explicit, "rate: 0.1, burst: 1");
+    let expected = "warning: `rod` takes in up to 1.000e-1 m³/s, of which `burst` lets 2.604e-3 go: one element of \
+                    2.604e-6 m³ in the mean every 1.000e-3 s; the rest waits | `burst: 39` keeps up; so does a `rate` \
+                    of at most 2.604e-3 m³/s, and so do steps of at most 2.604e-6 s";
+    assert!(said.contains(expected), "{said}");
+    let slow = "rate: 0.1, burst: 1, curve: Table([(0, 0.02), (1, 0.02)])";
+    for mends in ["rate: 0.1, burst: 39", "rate: 0.0026, burst: 1", slow] {
+        assert_eq!(takes(explicit, mends), "", "{mends}");
+    }
+    assert_eq!(takes("integration: (step: 2.6e-6)", "rate: 0.1, burst: 1"), "");
+    // of all that there is none waits
+    let [few, all] = [383, 384].map(|burst| takes(explicit, &format!("rate: 10, burst: {burst}")));
+    assert!(few.contains("`burst: 384` keeps up") && all.is_empty(), "{few}\n{all}");
+    let said = takes("solver: Implicit(step: 0.05)", "rate: 0.1, burst: 96");
+    assert!(said.contains("of which `burst` lets 5.000e-3 go: 96 elements of 2.604e-6 m³ in the mean every"), "{said}");
+}
+
+/// It goes along the upper side, .12 m in .1 s, and reaches .035 m.
+#[test]
+fn a_tip_that_is_too_quick_for_its_looks_is_told() {
+    let takes = |tool: &str, steps: &str, more: &str| {
+        let takes = format!("removal: [(when: InTool(tool: \"rod\", reach: 0.03, rate: 1e-4{more}))], {steps},");
+        told(tool, "", &takes)
+    };
+    let long = "solver: Implicit(step: 0.05)";
+    let ball = |way: &str| format!("(shape: Sphere(radius: 5e-3), {way})");
+    let way = "path: [(t: 0, at: (-0.01, 0.05, 0.1)), (t: 0.1, at: (0.11, 0.05, 0.1))]";
+    let said = takes(&ball(way), long, "");
+    let expected = "warning: `rod` goes 6.000e-2 m from one look at what is in its reach to the next, in 5.000e-2 s, \
+                    and reaches 3.500e-2 m from its middle: it leaves what it passes between them | steps of at most \
+                    1.458e-2 s leave no gaps";
+    assert!(said.contains(expected), "{said}");
+    let hand = ball("at: (0.05, 0.05, 0.1), port: (name: \"hand\", speed: 1.2)");
+    assert!(
+        takes(&hand, long, "").contains("`rod` may go up to 6.000e-2 m from one look"),
+        "{}",
+        takes(&hand, long, "")
+    );
+    let comes =
+        "path: [(t: 0, at: (-3, 0.05, 0.1)), (t: 0.05, at: (0.02, 0.05, 0.1)), (t: 0.1, at: (0.03, 0.05, 0.1))]";
+    let along = way.replace("0.1))", "0.1), rotation: (0, 90, 0))");
+    let quiet = [
+        takes(&ball(way), "solver: Implicit(step: 0.0145)", ""),
+        takes(&ball(way), "integration: (step: 1e-4)", ""),
+        // beside the body, and while it takes nothing, it may be as quick as it likes
+        takes(&ball(comes), long, ""),
+        takes(&ball(way), long, ", curve: Step(start: 0.2)"),
+        // what goes along itself is there at one look or the next
+        takes(&format!("(shape: Capsule(length: 0.1, radius: 5e-3), {along})"), long, ""),
+    ];
+    quiet.iter().for_each(|said| assert!(!said.contains("from one look"), "{said}"));
+}
+
+/// What a tool does that gives way to one copy another copy feels. Who goes where it is led does the same to all.
+#[test]
+fn a_tool_that_gives_way_to_copies_is_refused() {
+    let of = |copies: u32, moves: &str, uses: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let body = "mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4)), material: \"m\"";
+        let text = format!(
+            "(duration: 0.1, bodies: {{\"b\": ({body}, copies: {copies})}},
+            materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
+            constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))], {uses},
+            tools: {{\"ball\": (shape: Sphere(radius: 0.06), at: (0.05, 0.05, 0.17), {moves})}})"
+        );
+        told_of(&text, folder.path())
+    };
+    let touches = "contacts: [Tool(tool: \"ball\")]";
+    let holds = "attachments: [Grasp(tool: \"ball\", closed: Step(start: 0.05), reach: 0.02)]";
+    let free = "free: (density: 1000)";
+    let follows = |how: &str| format!("port: (name: \"hand\", speed: 0.1, follow: {how})");
+    let proxy = follows("Proxy(stiffness: 100)");
+    let by_proxy = "error: the tool `ball`, which follows its port as a `Proxy`, is shared by the 2 copies of `b`";
+    let cases = [
+        (free, touches, "error: the tool `ball`, which is `free`, is shared by the 2 copies of `b`: they would not do"),
+        (proxy.as_str(), touches, by_proxy),
+        (proxy.as_str(), holds, by_proxy),
+    ];
+    for (moves, uses, expected) in cases {
+        let said = of(2, moves, uses);
+        assert!(said.contains(expected) && said.contains("| leave `copies` out, or give each its own body"), "{said}");
+        assert!(!of(1, moves, uses).contains("copies"), "{}", of(1, moves, uses));
+        assert!(!of(2, &follows("Position"), uses).contains("shared"), "{}", of(2, &follows("Position"), uses));
+    }
+}
+
 #[test]
 fn suction_that_has_begun_before_the_first_step_is_refused() {
     let sucks = |curve: &str| {

@@ -3,9 +3,10 @@
 
 use super::wording::{count, digits, quantity};
 use serde::Serialize;
-use sinew::scene::schema::{Curve, ImplicitScheme};
+use sinew::scene::schema::{Attachment, Axis, Constraint, Curve, ImplicitScheme, Scene};
 use sinew::{BackendChoice, Error, Options, SceneFile, Simulation};
 use sinew_studies::accuracy::Method;
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 /// What implicit Euler would take.
@@ -50,7 +51,8 @@ const TRIED: u64 = 10;
 /// Elements from which on trying takes too long for a look.
 const MOST_ELEMENTS: usize = 50_000;
 
-/// What implicit steps would take in place of the explicit ones of a simulation, if they pay by much.
+/// What implicit steps would take in place of the explicit ones of a simulation, if they pay by much. None for bodies
+/// that nothing at rest holds: what carries them moves them far and strains them little, by how it quickens.
 ///
 /// # Errors
 /// None for what implicit steps cannot do: there is no advice then.
@@ -60,7 +62,7 @@ pub fn implicit(file: &SceneFile, explicit: &mut Simulation) -> Result<Option<Ad
     let curves: Vec<&Curve> = scene.curves().into_iter().map(|(_, curve)| curve).collect();
     let told_by_programs = curves.iter().any(|curve| matches!(curve, Curve::Input { .. }));
     let of_this_scene = Method::of(&scene) == Method::Explicit && !told_by_programs && !curves.is_empty();
-    if !of_this_scene || summary.elements > MOST_ELEMENTS {
+    if !of_this_scene || summary.elements > MOST_ELEMENTS || !are_held(&scene) {
         return Ok(None);
     }
     let explicit_passes = summary.planned_steps;
@@ -72,7 +74,9 @@ pub fn implicit(file: &SceneFile, explicit: &mut Simulation) -> Result<Option<Ad
         })
         .collect();
     steps.sort_by(|a, b| b.total_cmp(a));
-    let Some(first) = steps.first().and_then(|&step| tried(file, step)) else { return Ok(None) };
+    // what turns about what holds it would be said to swing too slowly to swing at all
+    let swings = |trial: &Trial| trial.frequency * scene.duration >= 1.0;
+    let Some(first) = steps.first().and_then(|&step| tried(file, step)).filter(swings) else { return Ok(None) };
     let error = |step: f64| {
         let worst = curves.iter().map(|curve| error_of_a_mass(curve, first.frequency, step, scene.duration));
         worst.fold(0.0, f64::max)
@@ -85,6 +89,34 @@ pub fn implicit(file: &SceneFile, explicit: &mut Simulation) -> Result<Option<Ad
     let passes = (trial.passes_a_step * scene.duration / step).ceil() as u64;
     let pays = (passes as f64) < (1.0 - SAVED) * explicit_passes as f64;
     Ok(pays.then_some(Advice { step, passes, explicit_passes, frequency: first.frequency, error }))
+}
+
+/// Whether each body is held along all axes by nodes that do not move, or is tied or glued to one that is.
+fn are_held(scene: &Scene) -> bool {
+    let fixes = |constraint: &Constraint, name: &String, axis: &Axis| match constraint {
+        Constraint::Fixed { body, axes, .. } => body.as_ref().is_none_or(|body| body == name) && axes.contains(axis),
+        Constraint::Prescribed { .. } => false,
+    };
+    let is_fixed = |name: &String, axis: &Axis| scene.constraints.iter().any(|one| fixes(one, name, axis));
+    let are_fixed = |name: &String| [Axis::X, Axis::Y, Axis::Z].iter().all(|axis| is_fixed(name, axis));
+    let mut held: BTreeSet<&String> = scene.bodies.keys().filter(|&name| are_fixed(name)).collect();
+    let mut before = None;
+    while before != Some(held.len()) {
+        before = Some(held.len());
+        for attachment in &scene.attachments {
+            let (one, other) = match attachment {
+                Attachment::Tie { from, to, .. } => (from.body.as_ref(), to.body.as_ref()),
+                Attachment::Glue { bodies: (one, other), .. } => (Some(one), Some(other)),
+                Attachment::Grasp { .. } | Attachment::Suture { .. } => continue,
+            };
+            if let (Some(one), Some(other)) = (one, other)
+                && (held.contains(one) || held.contains(other))
+            {
+                held.extend([one, other]);
+            }
+        }
+    }
+    held.len() == scene.bodies.len()
 }
 
 /// What a few steps showed.
@@ -160,6 +192,33 @@ mod tests {
         assert!(of(&slow, 0.01) < 2e-3, "{}", of(&slow, 0.01));
         assert!(of(&Curve::default(), 0.01) > 0.1, "{}", of(&Curve::default(), 0.01));
         assert_eq!(of(&Curve::Table(vec![(0.0, 0.0)]), 0.01), f64::INFINITY, "what nothing loads has no error");
+    }
+
+    /// Who is glued or tied to what is held is held; who hangs on a thread, or is held along one axis, may be carried.
+    #[test]
+    fn bodies_are_held_by_what_does_not_move() {
+        let held = |constraints: &str, attachments: &str| {
+            let mesh = "mesh: Box(size: (1, 1, 1), cells: (1, 1, 1))";
+            let body = |name: &str| format!("\"{name}\": ({mesh}, material: \"m\")");
+            let text = format!(
+                "(duration: 1, bodies: {{{}, {}, {}}},
+                materials: {{\"m\": (density: 1, neo_hookean: Young(young: 1, poisson: 0))}},
+                constraints: [{constraints}], attachments: [{attachments}])",
+                body("a"),
+                body("b"),
+                body("c")
+            );
+            let file = SceneFile::from_memory("held.ron", &text, Default::default(), &[]);
+            are_held(&file.unwrap().scene)
+        };
+        let (fixed, glue) = ("Fixed(body: \"c\", on: All)", "Glue(bodies: (\"a\", \"b\"))");
+        let ends = "from: (body: \"b\", at: (0, 0, 0)), to: (body: \"c\", at: (0, 0, 0))";
+        assert!(held(fixed, &format!("{glue}, Tie({ends})")));
+        assert!(!held(fixed, glue));
+        assert!(!held(fixed, &format!("{glue}, Suture({ends}, stiffness: 1)")));
+        assert!(held("Fixed(on: All)", "") && !held("Fixed(on: All, axes: [X])", ""));
+        assert!(held("Fixed(on: All, axes: [X, Y]), Fixed(on: All, axes: [Z])", ""));
+        assert!(!held("Prescribed(on: All, displacement: (0, 0, 1), curve: Smooth(end: 1))", ""));
     }
 
     /// Of a smooth load errors of the first order halve with the step.

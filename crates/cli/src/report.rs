@@ -40,7 +40,7 @@ pub fn text(summary: &Summary, scene: &SceneFile, folder: &Path, paint: Paint) -
     guards(summary, &mut page);
     mass(summary, &mut page);
     probes(summary, scene, &mut page);
-    tools(summary, &mut page);
+    tools(summary, scene, &mut page);
     contacts(summary, &mut page);
     attachments(summary, &mut page);
     ports(summary, &mut page);
@@ -231,7 +231,7 @@ fn mass(summary: &Summary, page: &mut Page) {
     page.rows("inversion", inversions.collect::<Vec<_>>());
 }
 
-fn tools(summary: &Summary, page: &mut Page) {
+fn tools(summary: &Summary, scene: &SceneFile, page: &mut Page) {
     let lines = summary.tools.iter().map(|(name, reading)| {
         let [x, y, z] = reading.force.to_array().map(|part| quantity(part, "N"));
         let inside = match reading.penetration > 0.0 {
@@ -249,12 +249,18 @@ fn tools(summary: &Summary, page: &mut Page) {
             0 => String::new(),
             count => format!(", {} slipped out", counted(count as u64, "node")),
         };
-        let but = if is_sucking { ", the work of what it sucks left out" } else { "" };
+        // also of one that sucks no more
+        let may_suck = scene.scene.suction.iter().any(|suction| suction.tool == *name);
+        let but = if may_suck { ", the work of what it sucks left out" } else { "" };
         let spent = reading
             .work
             .zip(reading.loss)
             .map_or(String::new(), |(work, loss)| format!("; it did {}{but}, {}", quantity(work, "J"), taken(loss)));
-        format!("{name} feels ({x}, {y}, {z}) of {nodes}{slipped}{inside}{sucks}{spent}")
+        let waits = match reading.waiting > 0.0 {
+            true => format!("; {} that it has taken in wait to go, as `burst` says", quantity(reading.waiting, "m³")),
+            false => String::new(),
+        };
+        format!("{name} feels ({x}, {y}, {z}) of {nodes}{slipped}{inside}{sucks}{spent}{waits}")
     });
     page.rows("tools", lines.collect::<Vec<_>>());
 }

@@ -7,10 +7,10 @@ use super::{Outcome, progress, terminal};
 use sinew::assembly::mesh_of;
 use sinew::components::Precision;
 use sinew::output::{Folder, OutputError, replace, write_gmsh};
-use sinew::scene::schema::InitialState;
+use sinew::scene::schema::{EquilibriumSearch, InitialState};
 use sinew::scene::syntax::Segment;
 use sinew::scene::{Diagnostics, NamedFile};
-use sinew::{BackendChoice, Options, SceneFile, Unloaded, Unloading, UnloadingStep, unload};
+use sinew::{BackendChoice, Options, SceneFile, Simulation, Unloaded, Unloading, UnloadingStep, unload};
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
@@ -29,6 +29,7 @@ pub fn command(arguments: &UnloadArguments) -> Outcome {
         threads: arguments.threads.into(),
         ..Options::default()
     };
+    look_at_all(&scene, &options)?;
     let how = Unloading { tolerance: arguments.tolerance, most: arguments.most.into() };
     terminal::say("iteration  largest distance  mean square   pseudo-steps\n")?;
     let mut silent = Ok(());
@@ -51,6 +52,17 @@ pub fn command(arguments: &UnloadArguments) -> Outcome {
         files.join(", "),
         sinew::shell_word(&path.join(SCENE))
     ))
+}
+
+/// Refuses what would be wrong with the scene that is written, also in what the search for rest leaves out: removal,
+/// suction, probes.
+fn look_at_all(scene: &SceneFile, options: &Options) -> Result<(), Failure> {
+    let mut whole = scene.clone();
+    whole.scene.bodies.values_mut().for_each(|body| body.rest_shape = None);
+    if whole.scene.start == InitialState::Undeformed && !whole.scene.is_static() {
+        whole.scene.start = InitialState::Equilibrium(EquilibriumSearch::default());
+    }
+    Ok(Simulation::new(&whole, options).map(drop)?)
 }
 
 fn line(step: &UnloadingStep) -> String {

@@ -77,6 +77,11 @@ impl<'a> Naming<'a> {
 
     /// A body of the part; the only one where none is named.
     fn body(&mut self, path: &Path, body: &mut Option<String>) {
+        self.body_or(path, body, "");
+    }
+
+    /// The same, with more to say where there are several.
+    fn body_or(&mut self, path: &Path, body: &mut Option<String>, more: &str) {
         if body.is_none() {
             match &self.only {
                 Only::Body(name) => *body = Some(name.clone()),
@@ -86,7 +91,7 @@ impl<'a> Naming<'a> {
                 }
                 Only::OneOf(names) => {
                     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-                    let note = format!("`body` is one of: {}", list(&names));
+                    let note = format!("`body` is one of: {}{more}", list(&names));
                     *body = names.first().map(ToString::to_string);
                     self.tell(path.clone(), format!("which body? The part `{}` has {}", self.part, names.len()), note);
                 }
@@ -96,10 +101,19 @@ impl<'a> Naming<'a> {
     }
 
     /// A body at which a tool of the part does something: an instrument without a body leaves open which it is, and the
-    /// scene around it has one only or is asked.
-    fn touched(&mut self, path: &Path, body: &mut Option<String>) {
+    /// scene around it has one only or is asked. The tool has its name in the scene around the part.
+    fn touched(&mut self, path: &Path, tool: &str, body: &mut Option<String>) {
+        let tool = inner_name(tool, self.part);
+        let more = match tool.contains('.') {
+            true => format!(
+                "; a part of it names none of them: leave the entry out there, and write it in the part `{}`, \
+                 of `{tool}`",
+                self.part
+            ),
+            false => String::new(),
+        };
         if body.is_some() || !matches!(self.only, Only::None) {
-            self.body(path, body);
+            self.body_or(path, body, &more);
         }
     }
 
@@ -137,7 +151,7 @@ impl<'a> Naming<'a> {
             match contact {
                 Contact::Tool { tool, body, .. } => {
                     self.name(tool);
-                    self.touched(&path, body);
+                    self.touched(&path, tool, body);
                 }
                 Contact::Between { bodies: (a, b), .. } => {
                     self.name(a);
@@ -177,7 +191,7 @@ impl<'a> Naming<'a> {
             if let When::InTool { tool, curve, .. } = &mut removal.when {
                 self.name(tool);
                 self.curve(curve);
-                self.touched(&path, &mut removal.body);
+                self.touched(&path, tool, &mut removal.body);
             } else {
                 self.body(&path, &mut removal.body);
             }
@@ -186,7 +200,7 @@ impl<'a> Naming<'a> {
             let path = self.path.name("suction").index(number);
             self.name(&mut suction.tool);
             self.curve(&mut suction.curve);
-            self.touched(&path, &mut suction.body);
+            self.touched(&path, &suction.tool, &mut suction.body);
         }
         for (name, probe) in &mut content.probes {
             let path = self.path.name("probes").name(name);

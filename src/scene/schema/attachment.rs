@@ -103,7 +103,8 @@ pub struct Point {
     /// The body; may be left out when there is one only.
     #[serde(default)]
     pub body: Option<String>,
-    /// Where it is at rest (m): in the body, or no farther from its surface than an edge of a face.
+    /// Where it is (m) in the shape of the body's `mesh`, whatever its `rest_shape`: in the body, or no farther from
+    /// its surface than an edge of a face.
     pub at: DVec3,
 }
 

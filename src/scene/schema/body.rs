@@ -13,7 +13,7 @@ pub struct Body {
     /// Where the mesh comes from.
     pub mesh: MeshSource,
     /// A mesh file with the same points and elements that says where they are at rest (m), its path relative to the
-    /// scene file; `mesh` is then a loaded shape, in which selections are made.
+    /// scene file; `mesh` is then a loaded shape, in which selections are made and places of attachments are.
     #[serde(default)]
     pub rest_shape: Option<String>,
     /// The name of the material of all elements that `regions` does not name.

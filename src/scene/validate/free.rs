@@ -1,8 +1,8 @@
-//! Tools that move freely: whether they weigh something, and what they cannot do.
+//! Tools that move freely: whether they weigh something, and what they cannot do. Tools that give way to copies.
 
 use super::{Validator, scene, show};
 use crate::scene::load_parts::{LoadParts, On};
-use crate::scene::schema::{Attachment, Free, InitialState, Load, Scene, Shape, Tool};
+use crate::scene::schema::{Attachment, Contact, Follow, Free, InitialState, Load, Scene, Shape, Tool};
 use crate::scene::syntax::Path;
 
 pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
@@ -30,6 +30,34 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
                 .note("leave `free` out, or let it come to rest in time, with `damping`");
         }
     }
+    shared(scene_, validator);
+}
+
+/// Refuses tools that give way to what the copies of a body do to them, who have nothing in common.
+fn shared(scene_: &Scene, validator: &mut Validator) {
+    let contacts = scene_.contacts.iter().enumerate().filter_map(|(number, contact)| match contact {
+        Contact::Tool { tool, body, .. } => Some((scene("contacts").index(number), tool, body)),
+        _ => None,
+    });
+    let grasps = scene_.attachments.iter().enumerate().filter_map(|(number, attachment)| match attachment {
+        Attachment::Grasp { tool, body, .. } => Some((scene("attachments").index(number), tool, body)),
+        _ => None,
+    });
+    for (path, name, body) in contacts.chain(grasps) {
+        if let Some(how) = scene_.tools.get(name).and_then(|tool| gives_way(scene_, tool)) {
+            super::suction::of_copies(scene_, validator, &path, body, &format!("the tool `{name}`, which {how},"));
+        }
+    }
+}
+
+/// How a tool gives way to what it meets, if it does.
+fn gives_way(scene_: &Scene, tool: &Tool) -> Option<&'static str> {
+    if tool.free.is_some() {
+        return Some("is `free`");
+    }
+    // at rest no hand moves it
+    let follow = tool.port.as_ref().filter(|_| !scene_.is_static()).map(|port| port.follow);
+    matches!(follow, Some(Follow::Proxy { .. })).then_some("follows its port as a `Proxy`")
 }
 
 /// How heavy it is.

@@ -80,7 +80,13 @@ fn bodies(scene_: &Scene, validator: &mut Validator) {
         }
     }
     for (i, removal) in scene_.removal.iter().enumerate() {
-        body_named(scene_, validator, &scene("removal").index(i), removal.body.as_ref());
+        let path = scene("removal").index(i);
+        match removal.when.tool() {
+            Some(tool) => touched(scene_, validator, &path, removal.body.as_ref(), |body| {
+                format!("(body: \"{body}\", when: InTool(tool: \"{tool}\", ...))")
+            }),
+            None => body_named(scene_, validator, &path, removal.body.as_ref()),
+        }
     }
     for (name, probe) in scene_.probes.iter().filter(|(_, probe)| !probe.what.is_of_no_body() || probe.body.is_some()) {
         body_named(scene_, validator, &scene("probes").name(name), probe.body.as_ref());
@@ -103,6 +109,44 @@ pub(super) fn body_named(scene_: &Scene, validator: &mut Validator, owner: &Path
         }
         _ => {}
     }
+}
+
+/// A body at which a tool does something. An instrument that is a part cannot name a body outside of it: it is told
+/// where `entry` can, which is what stands there of a body of that name.
+pub(super) fn touched(
+    scene_: &Scene,
+    validator: &mut Validator,
+    owner: &Path,
+    body: Option<&String>,
+    entry: impl Fn(&str) -> String,
+) {
+    let meant = match body {
+        None if scene_.bodies.len() > 1 => scene_.bodies.keys().next().cloned(),
+        Some(name) if !scene_.bodies.contains_key(name) => outside(scene_, name),
+        _ => None,
+    };
+    let Some(meant) = meant.filter(|_| validator.out.is_of_part(owner)) else {
+        return body_named(scene_, validator, owner, body);
+    };
+    let bodies: Vec<&str> = scene_.bodies.keys().map(String::as_str).collect();
+    let message = match body {
+        Some(name) => format!("there is no body `{name}`"),
+        None => format!("which body? The scene has {}", bodies.len()),
+    };
+    validator
+        .out
+        .error_at(owner.name("body"), message)
+        .note("no part names a body outside of it: leave this entry out of the part, and write it in the scene around")
+        .note(format!("there: {}; bodies: {}", entry(&meant), list(&bodies)));
+}
+
+/// The body outside of a part whose name stands in it, and so has got the names of the part and of those around it in
+/// front: `head.c`, or `c`, of `head.probe.c`.
+fn outside(scene_: &Scene, name: &str) -> Option<String> {
+    let words: Vec<&str> = name.split('.').collect();
+    let without = |from: usize, to: usize| [&words[..from], &words[to..]].concat().join(".");
+    let all = (0..words.len()).rev().flat_map(|from| (from + 1..words.len()).map(move |to| (from, to)));
+    all.map(|(from, to)| without(from, to)).find(|name| scene_.bodies.contains_key(name))
 }
 
 /// The name that something has in its part.

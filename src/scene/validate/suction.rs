@@ -1,6 +1,6 @@
 //! What is wrong with tools that suck.
 
-use super::names::body_named;
+use super::names::touched;
 use super::tool::named;
 use super::{Validator, scene};
 use crate::scene::limits::TOOLS_OF_A_BODY;
@@ -13,11 +13,13 @@ pub(super) fn suction(scene_: &Scene, validator: &mut Validator) {
     for (number, suction) in scene_.suction.iter().enumerate() {
         let path = scene("suction").index(number);
         named(scene_, validator, &path, &suction.tool);
-        body_named(scene_, validator, &path, suction.body.as_ref());
+        touched(scene_, validator, &path, suction.body.as_ref(), |body| {
+            format!("(tool: \"{}\", body: \"{body}\", ...)", suction.tool)
+        });
         validator.above_zero(&path.name("pressure"), suction.pressure, "Pa");
         validator.above_zero(&path.name("reach"), suction.reach, "m");
         validator.not_negative(&path.name("delay"), suction.delay, "s");
-        of_copies(scene_, validator, &path, &suction.body, "sucks at");
+        of_copies(scene_, validator, &path, &suction.body, "what the tool sucks at");
         let body = scene_.body_meant(&suction.body);
         let is_this = |other: &Suction| {
             (&other.tool, bore_meant(scene_, other), scene_.body_meant(&other.body))
@@ -66,17 +68,14 @@ fn bore_meant(scene_: &Scene, suction: &Suction) -> Option<f64> {
     suction.bore.or(own)
 }
 
-/// Refuses a mouth that the copies of a body would share, who have nothing in common.
+/// Refuses what the copies of a body would share, who have nothing in common: a mouth, a tool that gives way.
 pub(super) fn of_copies(scene_: &Scene, validator: &mut Validator, path: &Path, body: &Option<String>, what: &str) {
     let found = scene_
         .body_meant(body)
         .and_then(|name| Some((name, scene_.bodies.get(name)?)))
         .filter(|(_, body)| body.copies > 1);
     if let Some((name, body)) = found {
-        let message = format!(
-            "what the tool {what} is shared by the {} copies of `{name}`: they would not do alike",
-            body.copies
-        );
+        let message = format!("{what} is shared by the {} copies of `{name}`: they would not do alike", body.copies);
         validator.out.error_at(path, message).note("leave `copies` out, or give each its own body and tool");
     }
 }

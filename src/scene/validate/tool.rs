@@ -1,7 +1,7 @@
 //! Tools and contacts: whether they are somewhere, go somewhere, and touch something.
 
 use super::geometry::{TOOLS, named_file};
-use super::names::body_named;
+use super::names::{body_named, touched};
 use super::{Validator, scene, select, show};
 use crate::math::turned;
 use crate::scene::limits::{MOST_BURST, MOST_SWEEPS, MOST_TURNS, TOOLS_OF_A_BODY};
@@ -209,7 +209,7 @@ fn contacts(scene_: &Scene, validator: &mut Validator) {
             continue;
         };
         named(scene_, validator, &path, tool);
-        body_named(scene_, validator, &path, body.as_ref());
+        touched(scene_, validator, &path, body.as_ref(), |body| format!("Tool(tool: \"{tool}\", body: \"{body}\")"));
         select::validate(validator, &path.name("on"), on);
         let count = of_body.entry(scene_.body_meant(body)).or_default();
         *count += 1;
@@ -262,7 +262,7 @@ pub(super) fn takes(scene_: &Scene, validator: &mut Validator, path: &Path, remo
         validator.out.error_at(path, message).note("leave one of both out, or give one of them more");
     }
     if rate.is_some() {
-        super::suction::of_copies(scene_, validator, path, &removal.body, "takes from");
+        super::suction::of_copies(scene_, validator, path, &removal.body, "what the tool takes from");
     }
     if let Some(crumb) = crumb {
         validator.not_negative(&path.name("crumb"), *crumb, "m³");

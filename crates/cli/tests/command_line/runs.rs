@@ -165,6 +165,22 @@ fn a_scene_at_rest_says_nothing_of_work_and_bodies_touch_with_points() {
     assert!(summary["tools"]["lid"]["work"].as_f64() > Some(0.0), "{}", summary["tools"]);
 }
 
+/// What it has sucked did work, too, when it sucks no more.
+#[test]
+fn a_tool_that_has_sucked_says_what_its_work_leaves_out() {
+    let place = Workspace::new();
+    let tube = "tools={\"tube\": (shape: Tube(length: 0.1, inner: 0.03, outer: 0.035), at: (0.05, 0.05, 0.105))}";
+    let run = |acts: &str| {
+        let set = ["--set", tube, "--set", acts, "--set", "duration=0.1"];
+        place.done(&[&["run", "block.ron", "--backend", "cpu"], &set[..]].concat())
+    };
+    let said = run("suction=[(tool: \"tube\", pressure: 100, reach: 0.02, curve: Step(end: 0.05))]");
+    let expected = "tube feels (0 N, 0 N, 0 N) of 0 nodes; it did 0 J, the work of what it sucks left out, lost to";
+    assert!(said.contains(expected), "{said}");
+    let said = run("contacts=[Tool(tool: \"tube\", thin: true)]");
+    assert!(said.contains("; it did ") && !said.contains("left out"), "{said}");
+}
+
 #[test]
 fn values_of_set_reach_the_run_and_the_copy_of_the_scene() {
     let place = Workspace::new();

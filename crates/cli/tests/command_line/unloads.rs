@@ -53,6 +53,19 @@ fn what_is_not_found_is_told_with_status_1_and_nothing_is_written() {
     assert_eq!(place.sinew(&["unload", "block.ron", "--tolerance", "2"]).status, Some(2));
 }
 
+/// What the search for rest leaves out, too: the scene that was written was refused when it was run.
+#[test]
+fn what_would_be_wrong_with_the_scene_that_is_written_is_told_before_anything_is_sought() {
+    let removal = |on: &str| SCENE.replace("output:", &format!("removal: [(on: {on}, when: At(0.1))], output:"));
+    let place = Workspace::with_scene(&removal("Sphere(center: (0.05, 0.05, 0.2), radius: 0.01)"));
+    let ended = place.sinew(&["unload", "block.ron", "--tolerance", "1e-2"]);
+    ended.wants(2, &["no element is here", "block.ron"]);
+    assert!(ended.said.is_empty() && !place.path("out").exists(), "{}", ended.said);
+    fs::write(place.path("block.ron"), removal("Sphere(center: (0.05, 0.05, 0.05), radius: 0.02)")).unwrap();
+    place.done(&["unload", "block.ron", "--tolerance", "1e-2"]);
+    place.done(&["run", "out/block-unloaded/scene.ron", "-o", "out/again", "--set", "duration=0.01"]);
+}
+
 /// Files of tools and skins go with the scene, and so do those that these name.
 #[test]
 fn unloaded_scene_has_all_files_that_it_names() {

@@ -9,6 +9,8 @@ mod obj;
 #[cfg(feature = "files")]
 mod ply;
 #[cfg(feature = "files")]
+mod polygon;
+#[cfg(feature = "files")]
 mod read;
 
 use glam::DVec3;

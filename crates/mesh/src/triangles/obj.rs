@@ -1,7 +1,8 @@
 //! OBJ files: points, texture coordinates and polygons, as text.
 
-use super::Triangles;
+use super::{Triangles, polygon};
 use crate::{Cursor, Fault};
+use glam::DVec3;
 
 /// Lines `v X Y Z` of points, `vt U V` of texture coordinates and `f A/T B/T C/T ...` of polygons, whose corners are
 /// counted from 1, or backwards from -1; what else stands behind a corner's `/` belongs to pictures, as all other lines
@@ -44,14 +45,14 @@ pub(super) fn read(mut cursor: Cursor<'_>) -> Result<Triangles, Fault> {
                     has_texture |= at.is_some();
                     corners.push((point, at.map_or([0.0; 2], |row| texture[row as usize])));
                 }
-                let [first, rest @ ..] = &corners[..] else { return Err(too_few(&cursor, text)) };
-                if rest.len() < 2 {
+                if corners.len() < 3 {
                     return Err(too_few(&cursor, text));
                 }
-                for pair in rest.windows(2) {
-                    let three = [*first, pair[0], pair[1]];
-                    read.triangles.push(three.map(|(point, _)| point));
-                    read.texture.push(three.map(|(_, at)| at));
+                let places: Vec<DVec3> = corners.iter().map(|(point, _)| read.points[*point as usize]).collect();
+                let wrong = |what: String| cursor.fault(format!("the polygon {what}"), polygon::RULE);
+                for triangle in polygon::triangles(&places).map_err(wrong)? {
+                    read.triangles.push(triangle.map(|corner| corners[corner].0));
+                    read.texture.push(triangle.map(|corner| corners[corner].1));
                 }
             }
             _ => {}

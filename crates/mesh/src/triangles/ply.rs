@@ -1,6 +1,6 @@
 //! PLY files: points and polygons, as text or binary. Properties but places and corners belong to pictures.
 
-use super::Triangles;
+use super::{Triangles, polygon};
 use crate::Fault;
 use glam::DVec3;
 
@@ -100,6 +100,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, Fault> {
     let (elements, form) = elements(&head).map_err(wrong)?;
     let mut data = Data { rest, form };
     let mut read = Triangles::default();
+    let mut polygons = Polygons::default();
     let mut values = Vec::new();
     for element in elements.iter().filter(|element| !element.properties.is_empty()) {
         for row in 0..element.count {
@@ -111,7 +112,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, Fault> {
                 match (element.name.as_str(), axis, property.length.is_some()) {
                     ("vertex", Some(axis), false) => point[axis] = values[0],
                     ("face", _, true) if ["vertex_indices", "vertex_index"].contains(&property.name.as_str()) => {
-                        polygon(&values, element, row, &mut read).map_err(wrong)?;
+                        polygons.add(&values, row).map_err(wrong)?;
                     }
                     _ => {}
                 }
@@ -124,22 +125,48 @@ pub(super) fn read(bytes: &[u8]) -> Result<Triangles, Fault> {
             }
         }
     }
-    let points = read.points.len();
-    match read.triangles.iter().flatten().find(|row| **row as usize >= points) {
-        Some(row) => Err(wrong(format!("a face names vertex {row}; there are {points}, counted from 0"))),
-        None => Ok(read),
-    }
+    polygons.cut(&mut read).map_err(|(what, allowed)| Fault::whole(what, allowed))?;
+    Ok(read)
 }
 
-/// A polygon as a fan about its first corner.
-fn polygon(corners: &[f64], element: &Element, row: u64, read: &mut Triangles) -> Result<(), String> {
-    let whole = |corner: &f64| (corner.fract() == 0.0 && (0.0..4e9).contains(corner)).then_some(*corner as u32);
-    let rows: Option<Vec<u32>> = corners.iter().map(whole).collect();
-    let Some([first, rest @ ..]) = rows.as_deref().filter(|rows| rows.len() > 2) else {
-        return Err(format!("{} {row} is no polygon: its corners are {corners:?}", element.name));
-    };
-    read.triangles.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
-    Ok(())
+/// Polygons, whose points may follow them.
+#[derive(Default)]
+struct Polygons {
+    /// The rows of their corners, one polygon after the other.
+    corners: Vec<u32>,
+    /// Of each the row of its face, and where its corners end.
+    ends: Vec<(u64, usize)>,
+}
+
+impl Polygons {
+    fn add(&mut self, corners: &[f64], row: u64) -> Result<(), String> {
+        let whole = |corner: &f64| (corner.fract() == 0.0 && (0.0..4e9).contains(corner)).then_some(*corner as u32);
+        let rows: Option<Vec<u32>> = corners.iter().map(whole).collect();
+        let Some(rows) = rows.filter(|rows| rows.len() > 2) else {
+            return Err(format!("face {row} is no polygon: its corners are {corners:?}"));
+        };
+        self.corners.extend(rows);
+        self.ends.push((row, self.corners.len()));
+        Ok(())
+    }
+
+    /// Makes triangles of them; or says what is wrong, and what is allowed.
+    fn cut(self, read: &mut Triangles) -> Result<(), (String, &'static str)> {
+        let points = read.points.len();
+        if let Some(row) = self.corners.iter().find(|row| **row as usize >= points) {
+            return Err((format!("a face names vertex {row}; there are {points}, counted from 0"), RULE));
+        }
+        let mut begin = 0;
+        for (row, end) in self.ends {
+            let corners = &self.corners[begin..end];
+            let places: Vec<DVec3> = corners.iter().map(|row| read.points[*row as usize]).collect();
+            let wrong = |what: String| (format!("face {row}, counted from 0, {what}"), polygon::RULE);
+            let triangles = polygon::triangles(&places).map_err(wrong)?;
+            read.triangles.extend(triangles.into_iter().map(|triangle| triangle.map(|corner| corners[corner])));
+            begin = end;
+        }
+        Ok(())
+    }
 }
 
 /// The lines of the head, and what follows it.

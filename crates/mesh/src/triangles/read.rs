@@ -16,8 +16,9 @@ const RECORD: usize = 50;
 
 impl Triangles {
     /// Reads a file of triangles, STL, OBJ, PLY or glTF, whose coordinates are taken for metres. Points of equal
-    /// coordinates are made one; polygons become fans about their first corner; texture coordinates are kept, of OBJ
-    /// and glTF; normals, colours and the like are not read.
+    /// coordinates are made one; polygons become fans about their first corner, and where these would fold, as those of
+    /// polygons that are not convex may, other triangles of all their corners; texture coordinates are kept, of OBJ and
+    /// glTF; normals, colours and the like are not read.
     ///
     /// # Errors
     /// When the file cannot be read or breaks the rules of its format, with the line or the byte.

@@ -2,7 +2,7 @@
 
 use super::super::{DistanceGrid, Shape, Solid};
 use super::{assert_closed, volume};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use sinew_mesh::{FilePosition, MeshError, Triangles};
 
 fn tube() -> Triangles {
@@ -98,6 +98,72 @@ fn polygons_are_fans_and_several_solids_are_one() {
     other.points.iter_mut().for_each(|point| point.x += 3.0);
     let text = as_text(&read, "\n") + &as_text(&other, "\n");
     assert_eq!(Triangles::from_bytes("two.stl", text.as_bytes()).unwrap().triangles.len(), 24);
+}
+
+/// A prism whose ends are an L of one polygon each, from any corner on, either way round, with corners on its straight
+/// edges, too: closed, and of its volume and area.
+#[test]
+fn polygons_that_are_not_convex_do_not_fold() {
+    let plain = [[0, 0], [8, 0], [8, 3], [3, 3], [3, 9], [0, 9]];
+    let more = [[0, 0], [4, 0], [8, 0], [8, 3], [5, 3], [3, 3], [3, 3], [3, 6], [3, 7], [3, 9], [0, 9], [0, 8], [0, 5]];
+    for outline in [&plain[..], &more] {
+        let count = outline.len();
+        for first in 0..count {
+            let mut text = String::new();
+            for (z, [x, y]) in [0, 4].into_iter().flat_map(|z| outline.iter().map(move |at| (z, at))) {
+                // neither flat along an axis nor near the origin
+                let turned =
+                    DQuat::from_rotation_x(0.4) * DQuat::from_rotation_z(0.3) * DVec3::from([*x, *y, z].map(f64::from));
+                let at = DVec3::new(50.0, -20.0, 7.0) + turned;
+                text += &format!("v {} {} {}\n", at.x, at.y, at.z);
+            }
+            let around = |k: usize| (first + k) % count;
+            let below: Vec<String> = (0..count).rev().map(|k| (around(k) + 1).to_string()).collect();
+            let above: Vec<String> = (0..count).map(|k| (around(k) + 1 + count).to_string()).collect();
+            text += &format!("f {}\nf {}\n", below.join(" "), above.join(" "));
+            for k in 0..count {
+                let next = (k + 1) % count;
+                text += &format!("f {} {} {} {}\n", k + 1, next + 1, next + 1 + count, k + 1 + count);
+            }
+            let mut read = Triangles::from_bytes("l.obj", text.as_bytes()).unwrap();
+            let area: f64 = (0..read.triangles.len())
+                .map(|k| {
+                    let [a, b, c] = read.corners(k);
+                    0.5 * (b - a).cross(c - a).length()
+                })
+                .sum();
+            assert!((area / (2.0 * 42.0 + 34.0 * 4.0) - 1.0).abs() < 1e-12, "{count}, from {first}: {area}");
+            // a side between two corners in one place is none
+            read.triangles.retain(|[a, b, c]| a != b && b != c && c != a);
+            let both = (read.points, read.triangles);
+            assert_closed(&both);
+            assert!((volume(&both) / 168.0 - 1.0).abs() < 1e-9, "{count}, from {first}: {}", volume(&both));
+        }
+    }
+}
+
+#[test]
+fn polygons_that_cross_themselves_are_refused_with_their_place() {
+    let points = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 1 3 0\nv 1 1 0\n";
+    let read = |corners: &str| Triangles::from_bytes("a.obj", format!("{points}f {corners}\n").as_bytes());
+    for corners in ["1 3 2 4", "1 2 4 3 5", "1 3 2 4 5"] {
+        let error = read(corners).unwrap_err();
+        let MeshError::Format { at, .. } = &error else { panic!("{error}") };
+        assert_eq!(*at, FilePosition::Line(7), "{corners}: {error}");
+        assert!(error.to_string().contains("the polygon crosses itself"), "{corners}: {error}");
+    }
+    // what its first corner sees stays a fan, and so does what is a line
+    assert_eq!(read("6 1 2 3").unwrap().triangles.len(), 2);
+    assert_eq!(read("1 6 3 6").unwrap().triangles.len(), 2);
+    let star: String = (0..1100)
+        .map(|k| {
+            let (angle, radius) = (f64::from(k) * std::f64::consts::TAU / 1100.0, f64::from(1 + k % 2));
+            format!("v {} {} 0\n", radius * angle.cos(), radius * angle.sin())
+        })
+        .collect();
+    let corners: Vec<String> = (1..=1100).map(|k| k.to_string()).collect();
+    let error = Triangles::from_bytes("a.obj", format!("{star}f {}\n", corners.join(" ")).as_bytes()).unwrap_err();
+    assert!(error.to_string().contains("has 1100 corners and is not convex; 1000 are allowed"), "{error}");
 }
 
 #[test]
