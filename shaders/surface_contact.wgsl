@@ -154,8 +154,8 @@ struct Faced {
     second: Facing,
 }
 
-// The face that is most in a point's way, and of those that are walls of a corner with it the one that the point is
-// least outside of: several triangles of each wall are as near to what is behind a node of the line in which walls meet.
+// The face that is most in a point's way, and of those that are walls of a corner with it the one that it is least
+// outside of: several triangles of each wall are as near to what is behind a node of the line in which walls meet.
 fn faced(number: u32, point: vec3<f32>) -> Faced {
     let hold = lists_hold();
     let starts = surface.list + number;

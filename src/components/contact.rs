@@ -12,8 +12,8 @@ columns! {
     /// What each node carries on as a point of a surface, [`MEETING_NUMBERS`] a node: how far it has slipped
     /// elastically (m, a vector); how deep it may be inside (m, 0 or negative); a [`PointState`] of the last step; how
     /// far it was outside of what it faced before the step, after it in implicit steps, of two the less (m); since the
-    /// start the length it has slid (m), and what contact has taken of the node's energy (J), also where it is the faces
-    /// around it that are touched. Exists with [`ContactForce`].
+    /// start the length it has slid (m), and what contact has taken of the node's energy (J), also where it is the
+    /// faces around it that are touched. Exists with [`ContactForce`].
     SurfaceTouch(Reals) = "surface_touch", State of Touch, Nodes(MEETING_NUMBERS);
     /// The same of each point of faces, but that energy is counted at nodes alone: those of a facet after another, as
     /// the body's surface has them, or where [`FacePlaces`] says, and as [`face_points`](crate::contact::face_points)

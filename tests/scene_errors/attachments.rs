@@ -175,7 +175,8 @@ attachments: [Glue(bodies: (\"a\", \"b\"))])",
     );
     let found = told_of(&text, std::path::Path::new("."));
     let wanted = "3: error: nothing of `a` is near `b`: nothing is glued | the nearest node is 5.000e-4 m off, and \
-                  `reach` is 3.794e-4 m | it counts where bodies are at the start, which their `start` tells";
+                  `reach` is 3.794e-4 m | it counts where bodies are at the start, which their `start` or `rest_shape` \
+                  tells";
     assert!(found.contains(wanted), "{found}");
 }
 
