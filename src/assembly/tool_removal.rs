@@ -46,7 +46,7 @@ pub(super) fn add(assembly: &Assembly<'_>, body: &BodyParts, marks: &[bool], whe
     let mut signals = world.resource_mut::<Signals>();
     let pose = signals.add(Signal::Pose { motion: motion(tool), reference: removals.reference });
     let amplitude = DVec3::X * rate.unwrap_or(1.0);
-    let fastest = rate.unwrap_or(0.0) * curve.range()[1].max(0.0);
+    let fastest = rate.unwrap_or(0.0) * curve.largest(assembly.scene.scene.duration).max(0.0);
     let rate = signals.add(Signal::Load { curve: curve.clone(), amplitude });
     let threshold = threshold.map(|threshold| match threshold {
         Threshold::StretchAbove(limit) => (Measure::Stretch, limit),

@@ -93,6 +93,20 @@ impl Curve {
         }
     }
 
+    /// The largest factor from 0 until a time (s), not that of a jump there; of an input the largest of its
+    /// [range](Self::range).
+    pub fn largest(&self, until: f64) -> f64 {
+        let corner_after = |at: f64| self.corner_after(at).filter(|corner| *corner < until);
+        let corners = std::iter::successors(Some(0.0), |&at| corner_after(at));
+        // between two corners it goes up, down or straight on
+        let largest = corners.map(|at| self.value(at)).fold(f64::NEG_INFINITY, f64::max);
+        match self {
+            Curve::Step { .. } => largest,
+            Curve::Input { .. } => self.range()[1],
+            _ => largest.max(self.value(until)),
+        }
+    }
+
     /// The first time after one (s) at which the curve begins to move, or to move more than twice as fast as ever
     /// before.
     pub fn quickens_after(&self, time: f64) -> Option<f64> {
@@ -115,7 +129,7 @@ impl Curve {
     }
 
     /// The first time after one at which two pieces of the curve meet (s).
-    pub(super) fn corner_after(&self, time: f64) -> Option<f64> {
+    pub(crate) fn corner_after(&self, time: f64) -> Option<f64> {
         let first = |corners: [Option<f64>; 2]| corners.into_iter().flatten().find(|corner| *corner > time);
         match self {
             Curve::Step { start, end } => first([Some(*start), *end]),

@@ -53,7 +53,7 @@ pub struct ToolRemoval {
     pub pose: usize,
     /// Slot of the volume that it takes in a second (m³/s); with a threshold of a factor above 0 while it takes.
     pub rate: usize,
-    /// The largest rate of these (m³/s), as far as the scene tells; 0 with a threshold.
+    /// The largest rate of these (m³/s) within the scene's duration, as far as the scene tells; 0 with a threshold.
     pub fastest: f64,
     /// In place of a rate, what of the elements in reach has to exceed what.
     pub threshold: Option<(Measure, f64)>,

@@ -149,8 +149,11 @@ fn waiting(world: &mut World, tool: &str) -> f64 {
     for (removals, intake) in world.query::<(&ToolRemovals, &ToolIntake)>().iter(world) {
         let of_tool = removals.all.iter().enumerate().filter(|(_, removal)| removal.tool == tool);
         for (number, removal) in of_tool.filter(|(_, removal)| removal.threshold.is_none()) {
-            let input = world.resource::<Signals>().largest_input(removal.rate);
-            let usual = removal.largest + input * removal.fastest * look;
+            let signals = world.resource::<Signals>();
+            // a program may go on beyond the duration of the scene
+            let now = signals.values()[removal.rate][0];
+            let fastest = (signals.largest_input(removal.rate) * removal.fastest).max(now);
+            let usual = removal.largest + fastest * look;
             // rounding of what just fits is none that waits
             let more = intake.get(INTAKE_NUMBERS * number) - usual * (1.0 + 1e-3);
             sum += more.max(0.0);

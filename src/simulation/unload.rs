@@ -9,8 +9,8 @@
 use super::preload::at_rest;
 use super::{Options, Simulation};
 use crate::error::{Error, NotUnloaded};
-use crate::scene::SceneFile;
-use crate::scene::schema::{EquilibriumSearch, InitialState};
+use crate::scene::schema::{Analysis, EquilibriumSearch, InitialState, Load};
+use crate::scene::{Diagnostics, SceneFile};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -68,7 +68,8 @@ type Shape = Vec<DVec3>;
 /// scene is a static analysis at its time. `tell` is called after each iteration.
 ///
 /// # Errors
-/// What is wrong with the scene; that none was found, with the distance that was reached; what the GPU says.
+/// What is wrong with the scene, also that no load acts then; that none was found, with the distance that was reached;
+/// what the GPU says.
 pub fn unload(
     scene: &SceneFile,
     options: &Options,
@@ -89,6 +90,11 @@ pub fn unload(
         tell(&step);
         iterations.push(step);
         if step.largest <= search.allowed {
+            if iterations.len() == 1
+                && let Some(idle) = no_load(&search.file)
+            {
+                return Err(idle.into());
+            }
             return Ok(Unloaded { rest: search.by_body(), iterations, allowed: search.allowed });
         }
         search.improve();
@@ -101,6 +107,28 @@ pub fn unload(
         }
     }
     Err(search.given_up(&iterations, "it may become less with more iterations".into()))
+}
+
+/// What is wrong where no load acts at the time that is looked at: the mesh would be at rest as it is.
+fn no_load(file: &SceneFile) -> Option<Diagnostics> {
+    let scene = &file.scene;
+    let Analysis::Static(EquilibriumSearch { at, .. }) = scene.analysis else { return None };
+    let time = at.unwrap_or(scene.duration);
+    let begins_later = |load: &Load| load.curve().value(time) == 0.0;
+    if !scene.loads.iter().all(begins_later) {
+        return None;
+    }
+    let (path, note) = match scene.loads.is_empty() {
+        true => ("loads", "loads: [Gravity(acceleration: (0, 0, -9.81))] would be its weight"),
+        false => (
+            "loads[0].curve",
+            "by their curves loads are 0 then: leave `curve` out of what acted while the mesh was measured",
+        ),
+    };
+    let mut diagnostics = file.diagnostics();
+    let message = format!("no load acts at t = {time} s: the unloaded shape is the mesh as it is");
+    diagnostics.error_at(path, message).note(note);
+    Some(diagnostics)
 }
 
 /// The search at work.

@@ -136,8 +136,8 @@ fn a_rate_that_a_burst_starves_is_told() {
     let explicit = "integration: (step: 1e-4)";
     let said = takes(explicit, "rate: 0.1, burst: 1");
     let expected = "warning: `rod` takes in up to 1.000e-1 m³/s, of which `burst` lets 2.604e-3 go: one element of \
-                    2.604e-6 m³ in the mean every 1.000e-3 s; the rest waits | `burst: 39` keeps up; so does a `rate` \
-                    of at most 2.604e-3 m³/s, and so do steps of at most 2.604e-6 s";
+                    2.604e-6 m³ in the mean on its way every 1.000e-3 s; the rest waits | `burst: 39` keeps up; so \
+                    does a `rate` of at most 2.604e-3 m³/s, and so do steps of at most 2.604e-6 s";
     assert!(said.contains(expected), "{said}");
     let slow = "rate: 0.1, burst: 1, curve: Table([(0, 0.02), (1, 0.02)])";
     for mends in ["rate: 0.1, burst: 39", "rate: 0.0026, burst: 1", slow] {
@@ -148,7 +148,51 @@ fn a_rate_that_a_burst_starves_is_told() {
     let [few, all] = [383, 384].map(|burst| takes(explicit, &format!("rate: 10, burst: {burst}")));
     assert!(few.contains("`burst: 384` keeps up") && all.is_empty(), "{few}\n{all}");
     let said = takes("solver: Implicit(step: 0.05)", "rate: 0.1, burst: 96");
-    assert!(said.contains("of which `burst` lets 5.000e-3 go: 96 elements of 2.604e-6 m³ in the mean every"), "{said}");
+    let expected = "of which `burst` lets 5.000e-3 go: 96 elements of 2.604e-6 m³ in the mean on its way every";
+    assert!(said.contains(expected), "{said}");
+    // what its curve would be after the end does not count
+    for never in ["Table([(0, 0.01), (0.1, 0.01), (50, 1)])", "Step(start: 5)"] {
+        let said = takes(explicit, &format!("rate: 0.1, burst: 1, curve: {never}"));
+        assert!(!said.contains("`burst` lets"), "{never}: {said}");
+    }
+}
+
+/// A ball of 27 m/s that reaches .035 m is looked at every .65 ms at least, which is six steps of .1 ms and ten of .06.
+#[test]
+fn shorter_steps_that_keep_up_do_so_where_a_tip_is_quick() {
+    let of = |step: &str| {
+        let path = "path: [(t: 0, at: (-1.3, 0.05, 0.1)), (t: 0.1, at: (1.4, 0.05, 0.1))]";
+        let takes = "removal: [(when: InTool(tool: \"rod\", reach: 0.03, rate: 5e-3, burst: 1))]";
+        told(&format!("(shape: Sphere(radius: 5e-3), {path})"), "", &format!("{takes}, integration: (step: {step}),"))
+    };
+    let said = of("1e-4");
+    assert!(said.contains("every 6.000e-4 s; the rest") && said.contains("steps of at most 5.208e-5 s"), "{said}");
+    for step in ["5.208e-5", "4e-5", "1e-5"] {
+        assert!(!of(step).contains("`burst` lets"), "{step}: {}", of(step));
+    }
+}
+
+/// Elements are the smaller the nearer they are to the bore of a tube: .07 mm³ in the mean where the tip is there, .45
+/// at the outside, .27 in all.
+#[test]
+fn a_burst_is_of_elements_where_the_tip_is() {
+    let of = |at: &str, rate: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let mesh = "Tube(inner: 0.0005, outer: 0.0105, height: 0.004, angle: 90, cells: (20, 8, 8))";
+        let text = format!(
+            "(duration: 0.1, integration: (step: 2e-6), bodies: {{\"b\": (mesh: {mesh}, material: \"m\")}},
+            materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
+            constraints: [Fixed(on: Set(\"outer\"))],
+            tools: {{\"tip\": (shape: Sphere(radius: 5e-4), at: {at})}},
+            removal: [(when: InTool(tool: \"tip\", reach: 1.5e-3, rate: {rate}, burst: 6))])"
+        );
+        // a cell is six tetrahedra
+        told_of(&text, folder.path())
+    };
+    let said = of("(0.0002, 0.0002, 0.002)", "7.5e-6");
+    assert!(said.contains("`burst` lets") && said.contains("in the mean on its way every"), "{said}");
+    let said = of("(0.0072, 0.0072, 0.002)", "1.75e-5");
+    assert!(!said.contains("`burst` lets"), "{said}");
 }
 
 /// It goes along the upper side, .12 m in .1 s, and reaches .035 m.
@@ -185,6 +229,33 @@ fn a_tip_that_is_too_quick_for_its_looks_is_told() {
         takes(&format!("(shape: Capsule(length: 0.1, radius: 5e-3), {along})"), long, ""),
     ];
     quiet.iter().for_each(|said| assert!(!said.contains("from one look"), "{said}"));
+    // right through within a look, in and out again
+    let through = "path: [(t: 0, at: (-0.15, 0.05, 0.1)), (t: 0.1, at: (0.25, 0.05, 0.1))]";
+    let key = |time: &str, x: &str| format!("(t: {time}, at: ({x}, 0.05, 0.1))");
+    let keys = [key("0", "-0.15"), key("0.06", "-0.15"), key("0.07", "0.05"), key("0.08", "-0.15")];
+    let dart = format!("path: [{}]", keys.join(", "));
+    for (way, goes, steps) in [(through, "2.000e-1", "4.375e-3"), (dart.as_str(), "4.000e-1", "8.750e-4")] {
+        let said = takes(&ball(way), long, "");
+        assert!(said.contains(&format!("`rod` goes {goes} m from one look")), "{said}");
+        assert!(said.contains(&format!("steps of at most {steps} s leave no gaps")), "{said}");
+        let said = takes(&ball(way), &format!("solver: Implicit(step: {steps})"), "");
+        assert!(!said.contains("from one look"), "{said}");
+    }
+}
+
+/// A needle that turns by a right angle from look to look is beside a block at one of them and above it at the other.
+#[test]
+fn a_tip_that_turns_too_quickly_for_its_looks_is_told() {
+    let at = "at: (-0.05, 0.05, 0.098)";
+    let path = format!("path: [(t: 0, {at}, rotation: (0, 0, 0)), (t: 0.1, {at}, rotation: (0, 180, 0))]");
+    let of = |step: &str| {
+        let takes = "removal: [(when: InTool(tool: \"rod\", reach: 5e-3, rate: 1e-4))]";
+        let tool = format!("(shape: Capsule(length: 0.3, radius: 5e-3), {path})");
+        told(&tool, "", &format!("{takes}, solver: Implicit(step: {step}),"))
+    };
+    let said = of("0.05");
+    assert!(said.contains("`rod` goes 2.352e-1 m from one look"), "{said}");
+    assert!(!of("1e-3").contains("from one look"), "{}", of("1e-3"));
 }
 
 /// What a tool does that gives way to one copy another copy feels. Who goes where it is led does the same to all.

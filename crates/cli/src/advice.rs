@@ -2,8 +2,10 @@
 //! few steps take.
 
 use super::wording::{count, digits, quantity};
+use glam::DVec3;
 use serde::Serialize;
-use sinew::scene::schema::{Attachment, Axis, Constraint, Curve, ImplicitScheme, Scene};
+use sinew::components::{Authoring, Fixed, OfBody, RestPosition};
+use sinew::scene::schema::{Attachment, Curve, ImplicitScheme, Scene};
 use sinew::{BackendChoice, Error, Options, SceneFile, Simulation};
 use sinew_studies::accuracy::Method;
 use std::collections::BTreeSet;
@@ -52,7 +54,7 @@ const TRIED: u64 = 10;
 const MOST_ELEMENTS: usize = 50_000;
 
 /// What implicit steps would take in place of the explicit ones of a simulation, if they pay by much. None for bodies
-/// that nothing at rest holds: what carries them moves them far and strains them little, by how it quickens.
+/// that nothing at rest holds, or that can turn about what does: they go far and are strained little.
 ///
 /// # Errors
 /// None for what implicit steps cannot do: there is no advice then.
@@ -62,7 +64,7 @@ pub fn implicit(file: &SceneFile, explicit: &mut Simulation) -> Result<Option<Ad
     let curves: Vec<&Curve> = scene.curves().into_iter().map(|(_, curve)| curve).collect();
     let told_by_programs = curves.iter().any(|curve| matches!(curve, Curve::Input { .. }));
     let of_this_scene = Method::of(&scene) == Method::Explicit && !told_by_programs && !curves.is_empty();
-    if !of_this_scene || summary.elements > MOST_ELEMENTS || !are_held(&scene) {
+    if !of_this_scene || summary.elements > MOST_ELEMENTS || !are_held(&scene, held_alone(&scene, explicit)?) {
         return Ok(None);
     }
     let explicit_passes = summary.planned_steps;
@@ -91,15 +93,19 @@ pub fn implicit(file: &SceneFile, explicit: &mut Simulation) -> Result<Option<Ad
     Ok(pays.then_some(Advice { step, passes, explicit_passes, frequency: first.frequency, error }))
 }
 
-/// Whether each body is held along all axes by nodes that do not move, or is tied or glued to one that is.
-fn are_held(scene: &Scene) -> bool {
-    let fixes = |constraint: &Constraint, name: &String, axis: &Axis| match constraint {
-        Constraint::Fixed { body, axes, .. } => body.as_ref().is_none_or(|body| body == name) && axes.contains(axis),
-        Constraint::Prescribed { .. } => false,
-    };
-    let is_fixed = |name: &String, axis: &Axis| scene.constraints.iter().any(|one| fixes(one, name, axis));
-    let are_fixed = |name: &String| [Axis::X, Axis::Y, Axis::Z].iter().all(|axis| is_fixed(name, axis));
-    let mut held: BTreeSet<&String> = scene.bodies.keys().filter(|&name| are_fixed(name)).collect();
+/// The bodies that nodes which do not move hold.
+fn held_alone<'a>(scene: &'a Scene, simulation: &mut Simulation) -> Result<BTreeSet<&'a String>, Error> {
+    let mut held = BTreeSet::new();
+    for (name, body) in &scene.bodies {
+        if is_held(name, body.copies as usize, simulation)? {
+            held.insert(name);
+        }
+    }
+    Ok(held)
+}
+
+/// Whether each body is one of those, or is tied or glued to one.
+fn are_held<'a>(scene: &'a Scene, mut held: BTreeSet<&'a String>) -> bool {
     let mut before = None;
     while before != Some(held.len()) {
         before = Some(held.len());
@@ -117,6 +123,66 @@ fn are_held(scene: &Scene) -> bool {
         }
     }
     held.len() == scene.bodies.len()
+}
+
+/// The axes that a node does not move along: x, y, z as bits 0, 1, 2.
+type Axes = u32;
+/// The least lever that keeps a body from turning, as a share of its size.
+const LEVER: f64 = 1e-4;
+
+/// Whether nodes that do not move keep each copy of a body from going and from turning as a whole.
+fn is_held(name: &str, copies: usize, simulation: &mut Simulation) -> Result<bool, Error> {
+    let body = simulation.body(name)?;
+    let world = simulation.world_mut();
+    let (Some(authoring), Some(rest)) = (world.get::<Authoring>(body), world.get::<RestPosition>(body)) else {
+        return Ok(false);
+    };
+    let (order, places) = (authoring.node_rows.clone(), rest.0.clone());
+    let mut fixed: Vec<Axes> = vec![0; places.len()];
+    for (one, _) in world.query::<(&Fixed, &OfBody)>().iter(world).filter(|(_, of)| of.0 == body) {
+        one.rows.iter().for_each(|&row| fixed[row as usize] |= one.axes);
+    }
+    // numbers go on from copy to copy
+    let of_a_copy = (order.len() / copies.max(1)).max(1);
+    let nodes = |rows: &[u32]| -> Vec<(DVec3, Axes)> {
+        rows.iter().map(|&row| (places[row as usize], fixed[row as usize])).collect()
+    };
+    Ok(!order.is_empty() && order.chunks(of_a_copy).all(|rows| leaves_no_way(&nodes(rows))))
+}
+
+/// Whether nodes with the axes that they do not move along leave a rigid body none of its six ways to move: to go along
+/// three axes, and to turn about three, by its size times the angle.
+fn leaves_no_way(nodes: &[(DVec3, Axes)]) -> bool {
+    let (low, high) = sinew::mesh::extent(nodes.iter().map(|(place, _)| *place));
+    let (middle, size) = (0.5 * (low + high), (high - low).length());
+    let mut products = [[0.0_f64; 6]; 6];
+    for (place, axes) in nodes {
+        let arm = (*place - middle) / size;
+        for (bit, axis) in [1, 2, 4].into_iter().zip(DVec3::AXES) {
+            if *axes & bit == 0 {
+                continue;
+            }
+            let turned = arm.cross(axis);
+            let row = [axis.x, axis.y, axis.z, turned.x, turned.y, turned.z];
+            for (products, a) in products.iter_mut().zip(row) {
+                products.iter_mut().zip(row).for_each(|(product, b)| *product += a * b);
+            }
+        }
+    }
+    // what is left of each way once those before it are held
+    let mut left: Vec<usize> = (0..6).collect();
+    while let Some(pivot) = left.iter().copied().max_by(|&a, &b| products[a][a].total_cmp(&products[b][b])) {
+        let most = products[pivot];
+        if !most[pivot].is_finite() || most[pivot] <= LEVER * LEVER {
+            return false;
+        }
+        left.retain(|&row| row != pivot);
+        for &row in &left {
+            let factor = products[row][pivot] / most[pivot];
+            products[row].iter_mut().zip(most).for_each(|(product, pivot)| *product -= factor * pivot);
+        }
+    }
+    true
 }
 
 /// What a few steps showed.
@@ -194,31 +260,48 @@ mod tests {
         assert_eq!(of(&Curve::Table(vec![(0.0, 0.0)]), 0.01), f64::INFINITY, "what nothing loads has no error");
     }
 
-    /// Who is glued or tied to what is held is held; who hangs on a thread, or is held along one axis, may be carried.
+    /// Who is glued or tied to what is held is held; who hangs on a thread may be carried.
     #[test]
     fn bodies_are_held_by_what_does_not_move() {
-        let held = |constraints: &str, attachments: &str| {
+        let held = |by: &str, attachments: &str| {
             let mesh = "mesh: Box(size: (1, 1, 1), cells: (1, 1, 1))";
             let body = |name: &str| format!("\"{name}\": ({mesh}, material: \"m\")");
             let text = format!(
                 "(duration: 1, bodies: {{{}, {}, {}}},
                 materials: {{\"m\": (density: 1, neo_hookean: Young(young: 1, poisson: 0))}},
-                constraints: [{constraints}], attachments: [{attachments}])",
+                attachments: [{attachments}])",
                 body("a"),
                 body("b"),
                 body("c")
             );
-            let file = SceneFile::from_memory("held.ron", &text, Default::default(), &[]);
-            are_held(&file.unwrap().scene)
+            let scene = SceneFile::from_memory("held.ron", &text, Default::default(), &[]).unwrap().scene;
+            are_held(&scene, scene.bodies.keys().filter(|name| by.contains(name.as_str())).collect())
         };
-        let (fixed, glue) = ("Fixed(body: \"c\", on: All)", "Glue(bodies: (\"a\", \"b\"))");
+        let glue = "Glue(bodies: (\"a\", \"b\"))";
         let ends = "from: (body: \"b\", at: (0, 0, 0)), to: (body: \"c\", at: (0, 0, 0))";
-        assert!(held(fixed, &format!("{glue}, Tie({ends})")));
-        assert!(!held(fixed, glue));
-        assert!(!held(fixed, &format!("{glue}, Suture({ends}, stiffness: 1)")));
-        assert!(held("Fixed(on: All)", "") && !held("Fixed(on: All, axes: [X])", ""));
-        assert!(held("Fixed(on: All, axes: [X, Y]), Fixed(on: All, axes: [Z])", ""));
-        assert!(!held("Prescribed(on: All, displacement: (0, 0, 1), curve: Smooth(end: 1))", ""));
+        assert!(held("c", &format!("{glue}, Tie({ends})")));
+        assert!(!held("c", glue));
+        assert!(!held("c", &format!("{glue}, Suture({ends}, stiffness: 1)")));
+        assert!(held("abc", "") && !held("", ""));
+    }
+
+    /// Three corners of a block keep it from turning, and so do planes of symmetry; an edge, wherever it is, does not,
+    /// and neither do nodes that do not move along one axis.
+    #[test]
+    fn what_can_turn_is_not_held() {
+        let held = |axes: &dyn Fn(DVec3) -> Axes| {
+            let corner = |n: usize| DVec3::new((n & 1) as f64, ((n >> 1) & 1) as f64, (n >> 2) as f64);
+            let block: Vec<DVec3> = (0..8).map(|n| DVec3::new(0.3, -7.0, 0.1) + 0.02 * corner(n)).collect();
+            let nodes: Vec<(DVec3, Axes)> = (0..8).zip(&block).map(|(n, place)| (*place, axes(corner(n)))).collect();
+            leaves_no_way(&nodes)
+        };
+        let all = |is_one: bool| if is_one { 7 } else { 0 };
+        assert!(held(&|x| all(x.x == 0.0)) && held(&|x| all(x.element_sum() <= 1.0 && x.z == 0.0)));
+        assert!(held(&|x| u32::from(x.x == 0.0) + 2 * u32::from(x.y == 0.0) + 4 * u32::from(x.z == 0.0)));
+        assert!(!held(&|x| all(x.x == 0.0 && x.z == 1.0)) && !held(&|x| all(x.element_sum() == 0.0)));
+        assert!(!held(&|_| 1) && !held(&|_| 0) && !leaves_no_way(&[]));
+        // held about it, but not along it
+        assert!(!held(&|x| 6 * u32::from(x.x == 0.0)));
     }
 
     /// Of a smooth load errors of the first order halve with the step.

@@ -150,6 +150,21 @@ pub struct CheckArguments {
     /// What is known of a sound scene as JSON: sizes, steps, and the stable step with the elements that set it
     #[arg(long)]
     pub json: bool,
+    /// The number type that a run would have [default: f32, and f64 of a path by arc length, which is followed in no
+    /// other]
+    #[arg(long, value_enum)]
+    pub precision: Option<PrecisionName>,
+}
+
+impl CheckArguments {
+    /// The number type that a scene is checked in.
+    pub fn precision_of(&self, scene: &SceneFile) -> Precision {
+        match self.precision {
+            Some(name) => name.into(),
+            None if scene.scene.follows_path() => Precision::F64,
+            None => Precision::F32,
+        }
+    }
 }
 
 /// Which device, and which numbers.
@@ -322,6 +337,15 @@ pub enum PrecisionName {
     F64,
 }
 
+impl From<PrecisionName> for Precision {
+    fn from(name: PrecisionName) -> Self {
+        match name {
+            PrecisionName::F32 => Precision::F32,
+            PrecisionName::F64 => Precision::F64,
+        }
+    }
+}
+
 #[derive(Clone, Copy, ValueEnum)]
 pub enum SchemeName {
     Patches,
@@ -337,10 +361,7 @@ impl HowArguments {
                 BackendName::Cpu => BackendChoice::Cpu,
                 BackendName::Gpu => BackendChoice::Gpu,
             },
-            precision: match self.device.precision {
-                PrecisionName::F32 => Precision::F32,
-                PrecisionName::F64 => Precision::F64,
-            },
+            precision: self.device.precision.into(),
             threads: self.threads.into(),
             gpu: Choice::parse(&self.device.gpu),
             scheme: self.scheme.map(|name| match name {

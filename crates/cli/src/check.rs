@@ -7,11 +7,12 @@ use super::failure::{Failure, count_of};
 use super::progress;
 use super::stability;
 use super::terminal::{self, Paint};
-use super::wording::{count, counted, quantity};
+use super::wording::{count, counted, other_end, quantity};
 use sinew::components::Block;
 use sinew::components::Cadence;
+use sinew::scene::schema::{Scene, Solver};
 use sinew::systems::Registry;
-use sinew::{BackendChoice, Error, Options, Simulation};
+use sinew::{BackendChoice, Error, Options, Simulation, Summary};
 use std::path::Path;
 
 /// Shows all that is wrong, and a line of verdict.
@@ -23,7 +24,8 @@ pub fn command(arguments: &CheckArguments) -> Outcome {
         return Err(diagnostics.into());
     }
     terminal::aside(&diagnostics.render(Paint::of_stderr().is_on()));
-    let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
+    let precision = arguments.precision_of(&scene);
+    let options = Options { backend: BackendChoice::Cpu, precision, threads: 1, ..Options::default() };
     let mut simulation = progress::during("building the simulation", || Simulation::new(&scene, &options))?;
     progress::settle(&mut simulation)?;
     let advice = progress::during("looking for cheaper steps", || advice::implicit(&scene, &mut simulation))?;
@@ -64,10 +66,11 @@ fn verdict(simulation: &mut Simulation, advice: Option<&Advice>) -> Result<Strin
     );
     lines += &match &summary.equilibrium {
         None => format!(
-            "{} of {} for {}\n{}",
+            "{} of {} for {}\n{}{}",
             counted(summary.planned_steps, "step"),
             quantity(summary.time_step, "s"),
             quantity(simulation.scene().duration, "s"),
+            ends_elsewhere(&summary, simulation.scene()).unwrap_or_default(),
             stability::at_start(&summary),
         ),
         Some(sought) => format!(
@@ -82,6 +85,15 @@ fn verdict(simulation: &mut Simulation, advice: Option<&Advice>) -> Result<Strin
     let observed = summary.equilibrium.as_ref().map_or(summary.planned_steps, |sought| sought.load_steps);
     lines += &format!("a run writes: {}\n", outputs(simulation, observed).join(", "));
     Ok(lines)
+}
+
+/// That a run will not end at `duration`; chosen steps do.
+fn ends_elsewhere(summary: &Summary, scene: &Scene) -> Option<String> {
+    if let Solver::Implicit { adaptive: Some(_), .. } = scene.solver {
+        return None;
+    }
+    let end = other_end(summary.planned_steps as f64 * summary.time_step, scene.duration)?;
+    Some(format!("a run ends {end}\n"))
 }
 
 /// What `sinew run --verbose` says before the first step.

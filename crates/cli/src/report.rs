@@ -5,7 +5,7 @@ mod systems;
 use super::run::PICTURES;
 use super::stability;
 use super::terminal::Paint;
-use super::wording::{bytes, count, counted, digits, quantity, speed};
+use super::wording::{bytes, count, counted, digits, other_end, quantity, speed};
 use sinew::components::GuardMemory;
 use sinew::observation::Heading;
 use sinew::{Equilibrium, ImplicitSteps, SceneFile, Summary, SurfaceContactUse};
@@ -31,7 +31,7 @@ pub fn text(summary: &Summary, scene: &SceneFile, folder: &Path, paint: Paint) -
         page.row("preload", format!("at rest before the first step, after {steps} in {time}"));
         equilibrium(&preload.equilibrium, "", &mut page);
     }
-    speeds(summary, &mut page);
+    speeds(summary, scene.scene.duration, &mut page);
     if let Some(took) = &summary.implicit {
         implicit(took, summary.equilibrium.is_some(), &mut page);
     }
@@ -103,7 +103,7 @@ fn equilibrium(found: &Equilibrium, heading: &str, page: &mut Page) {
     page.row("", format!("about {} of displacements to go{taken_back}{newton}", digits(found.remaining_motion)));
 }
 
-fn speeds(summary: &Summary, page: &mut Page) {
+fn speeds(summary: &Summary, duration: f64, page: &mut Page) {
     let steps = match summary.steps == summary.planned_steps {
         true => counted(summary.steps, "step"),
         false => format!("{} of {}", counted(summary.steps, "step"), summary.planned_steps),
@@ -131,7 +131,8 @@ fn speeds(summary: &Summary, page: &mut Page) {
     let (before, writing) = (quantity(summary.setup_seconds, "s"), quantity(summary.writing_seconds, "s"));
     page.row("beside it", format!("{before} of reading and building, {writing} of observing and writing"));
     match summary.ended.as_str() {
-        "finished" => {}
+        "finished" if summary.equilibrium.is_some() => {}
+        "finished" => page.rows("ended", other_end(summary.simulated, duration)),
         "interrupted" => page.row("ended", "interrupted; what was written until then is whole"),
         // the reason itself is told on stderr and stands in summary.json
         _ => page.row("ended", "too early; the fields hold the last good state"),

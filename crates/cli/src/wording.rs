@@ -62,6 +62,13 @@ pub fn bytes(number: u64) -> String {
     if number < 1000 { counted(number, "byte") } else { quantity(number as f64, "B") }
 }
 
+/// That a run ends at another time than it should (s), by more than a hundredth of it: steps are not cut.
+pub fn other_end(end: f64, duration: f64) -> Option<String> {
+    let (ends, wanted) = (quantity(end, "s"), quantity(duration, "s"));
+    let is_other = (end - duration).abs() > 0.01 * duration;
+    is_other.then(|| format!("at {ends}, not at the {wanted} of `duration`: whole steps make no such time"))
+}
+
 /// How long something takes, roughly: `12 s`, `3 min 20 s`, `2 h 5 min`.
 pub fn duration(time: Duration) -> String {
     let seconds = time.as_secs();

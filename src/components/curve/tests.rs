@@ -39,6 +39,21 @@ fn a_curve_quickens_where_it_begins_and_where_it_is_twice_as_fast() {
 }
 
 #[test]
+fn the_largest_value_is_that_until_a_time() {
+    let table = Curve::Table(vec![(0.0, 0.5), (0.1, 2.0), (0.2, 0.0), (50.0, 100.0)]);
+    for (until, expected) in [(0.05, 1.25), (0.1, 2.0), (0.3, 2.0), (25.1, 50.0), (60.0, 100.0)] {
+        let found = table.largest(until);
+        assert!((found - expected).abs() < 1e-12, "until {until}: {found}, expected {expected}");
+    }
+    let late = Curve::Step { start: 5.0, end: None };
+    assert_eq!([1.0, 5.0, 5.1].map(|until| late.largest(until)), [0.0, 0.0, 1.0]);
+    assert_eq!(Curve::Step { start: 0.0, end: Some(0.1) }.largest(1.0), 1.0);
+    assert_eq!(Curve::Ramp { start: 1.0, end: 3.0 }.largest(2.0), 0.5);
+    assert_eq!(Curve::Smooth { start: 1.0, end: 3.0 }.largest(1.0), 0.0);
+    assert_eq!(Curve::Input { name: "x".into(), initial: 2.0, rate: None }.largest(0.1), 2.0);
+}
+
+#[test]
 fn finest_is_the_shortest_piece() {
     assert_eq!(Curve::default().finest(), None);
     assert_eq!(Curve::Ramp { start: 1.0, end: 1.5 }.finest(), Some(0.5));

@@ -112,6 +112,10 @@ impl<'a> Value<'a> {
         }
         let mut diagnostic = Diagnostic::error(field.name.span.clone(), format!("unknown field `{name}`"));
         diagnostic.label(format!("not a field of {owner}"));
+        if owner == "Scene" && name == "variants" {
+            diagnostic
+                .note("this looks like a sweep, which names a scene and its variants: it is run by `sinew sweep`");
+        }
         if fields.is_empty() {
             diagnostic.note(format!("{owner} has no fields"));
         } else {

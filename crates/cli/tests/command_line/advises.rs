@@ -80,6 +80,14 @@ fn check_advises_no_implicit_steps_for_what_goes_as_a_whole() {
             loads: [Gravity(acceleration: (0, 0, -9.81), curve: Smooth(end: 2))])"
         )
     };
-    assert!(advice("hinge.ron", &hinge("And([Set(\"x0\"), Set(\"z0\")])")).is_null());
+    let edge = hinge("And([Set(\"x0\"), Set(\"z0\")])");
+    assert!(advice("hinge.ron", &edge).is_null());
+    // soft and for long: it swings twice and more, by what the quotient says
+    let long = edge.replace("duration: 2,", "duration: 10,").replace("end: 2)", "end: 6.67)").replace("3e5", "3e4");
+    assert!(long.contains("duration: 10") && long.contains("6.67") && long.contains("3e4"), "{long}");
+    assert!(advice("long.ron", &long).is_null());
+    let planes = ["x", "y", "z"].map(|axis| format!("Fixed(on: Set(\"{axis}0\"), axes: [{}])", axis.to_uppercase()));
+    let planes = edge.replace("Fixed(on: And([Set(\"x0\"), Set(\"z0\")]))", &planes.join(", "));
+    assert!(planes.contains("axes: [Z]") && advice("planes.ron", &planes).is_object(), "{planes}");
     assert!(advice("held.ron", &hinge("Set(\"x0\")")).is_object());
 }

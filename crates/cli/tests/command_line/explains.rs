@@ -312,3 +312,14 @@ fn what_a_step_repeats_is_told_once_with_its_number() {
         Workspace::new().done(&["explain", "block.ron", "--backend", "cpu", "--set", "contacts=[Itself(sweeps: 3)]"]);
     assert!(page.contains("repeat 3 times: normal forces, what they do to nodes\n"), "{page}");
 }
+
+/// A path by arc length is followed in f64 only, and `check` had no word for that.
+#[test]
+fn check_takes_a_precision_and_a_path_by_arc_length_in_f64() {
+    let place = Workspace::new();
+    let snap = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/snap.ron");
+    let said = place.done(&["check", snap]);
+    assert!(said.starts_with("sound") && said.contains("path.csv"), "{said}");
+    place.sinew(&["check", snap, "--precision", "f32"]).wants(2, &["a path by arc length is followed in f64"]);
+    place.done(&["check", "block.ron", "--precision", "f64"]);
+}

@@ -354,3 +354,20 @@ fn inputs_stay_as_they_are_and_the_run_says_so() {
     place.done(&["run", "block.ron", "--backend", "cpu"]);
     assert!(half < 0.0 && sag("out/block") < 1.2 * half, "{half} m with half the weight");
 }
+
+/// Steps are not cut: the end is another, and the report says so where that is more than a hundredth.
+#[test]
+fn a_run_that_ends_elsewhere_says_so() {
+    let place = Workspace::new();
+    let of = |word: &str, step: &str| {
+        let solver = format!("solver=Implicit(step: {step})");
+        let set = ["--set", "duration=0.1", "--set", &solver];
+        let device: &[&str] = if word == "run" { &["--backend", "cpu"] } else { &[] };
+        place.done(&[&[word, "block.ron"], &set[..], device].concat())
+    };
+    let told = "at 70 ms, not at the 100 ms of `duration`";
+    let said = of("run", "0.07");
+    assert!(said.lines().any(|line| line.starts_with("ended") && line.contains(told)), "{said}");
+    assert!(of("check", "0.07").contains(told));
+    assert!(!of("run", "0.05").contains("ended") && !of("check", "0.05").contains("not at"));
+}

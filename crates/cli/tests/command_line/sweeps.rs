@@ -214,3 +214,8 @@ fn the_example_is_what_the_page_shows() {
     assert!(told.contains("2 variants: 2 finished"), "{told}");
     assert!(place.read("part/rows_2_of_3.csv").contains("\n4,1100,\"(0, 0, -9.81)\",Finished,1"), "{told}");
 }
+
+#[test]
+fn check_of_a_sweep_says_who_runs_it() {
+    place().sinew(&["check", "sweep.ron"]).wants(2, &["unknown field `variants`", "run by `sinew sweep`"]);
+}

@@ -53,6 +53,21 @@ fn what_is_not_found_is_told_with_status_1_and_nothing_is_written() {
     assert_eq!(place.sinew(&["unload", "block.ron", "--tolerance", "2"]).status, Some(2));
 }
 
+/// It was found after one iteration, with the distance 0: the scan itself.
+#[test]
+fn a_scene_in_which_no_load_acts_at_the_start_is_refused() {
+    let place = Workspace::new();
+    let unload = |set: &[&str]| place.sinew(&[&["unload", "block.ron", "--tolerance", "1e-2"], set].concat());
+    let why = "no load acts at t = 0 s: the unloaded shape is the mesh as it is";
+    unload(&["--set", "loads[0].curve=Smooth(end: 0.05)"]).wants(2, &[why, "Smooth(end: 0.05)", "leave `curve` out"]);
+    unload(&["--set", "loads=[]"]).wants(2, &[why]);
+    // one that begins later beside one that acts is what is to happen
+    let push = "loads=[Pressure(on: Set(\"z1\"), pressure: 10, curve: Smooth(end: 0.05)), \
+                Gravity(acceleration: (0, 0, -9.81))]";
+    assert!(!place.path("out").exists());
+    unload(&["--set", push]).wants(0, &[]);
+}
+
 /// What the search for rest leaves out, too: the scene that was written was refused when it was run.
 #[test]
 fn what_would_be_wrong_with_the_scene_that_is_written_is_told_before_anything_is_sought() {
