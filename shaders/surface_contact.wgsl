@@ -130,99 +130,6 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing, reach: 
     return faced;
 }
 
-// Whether two faces are walls of a corner that the point is in, and the first is not behind the second.
-fn is_corner(first: Facing, second: Facing, point: vec3<f32>) -> bool {
-    let edge = min(edge_with(first.triangle), edge_with(second.triangle));
-    let is_before = dot(second.normal, first.at - second.at) > -ALIKE * edge;
-    return dot(first.normal, second.normal) < CORNER && is_before && rises(first, second, point, edge);
-}
-
-// How little a face is in a point's way.
-fn in_way(facing: Facing, edge: f32) -> f32 {
-    let inside = max(-facing.gap, 0.0) + ALIKE * edge;
-    return max(facing.gap, 0.0) + inside * (1.0 + TURNED_AWAY + facing.turned);
-}
-
-// Whether a face is more in a point's way than another.
-fn is_more_in_way(facing: Facing, other: Facing) -> bool {
-    let edge = min(edge_with(facing.triangle), edge_with(other.triangle));
-    return in_way(facing, edge) < in_way(other, edge);
-}
-
-struct Faced {
-    first: Facing,
-    second: Facing,
-}
-
-// The face that is most in a point's way, and of those that are walls of a corner with it the one that it is least
-// outside of: several triangles of each wall are as near to what is behind a node of the line in which walls meet.
-fn faced(number: u32, point: vec3<f32>) -> Faced {
-    let hold = lists_hold();
-    let starts = surface.list + number;
-    let all = surface.list + surface.items + 1u;
-    let begin = select(0u, surface_lists[starts], hold);
-    let end = select(surface.triangles, surface_lists[starts + 1u], hold);
-    let largest = largest_step();
-    var both: Faced;
-    both.first.there = false;
-    both.second.there = false;
-    var own = vec3<f32>(0.0);
-    var own_known = false;
-    var others = 0u;
-    // the walls are looked for once the first is known, of those that face more than one
-    for (var turn = 0u; turn < 2u && (turn == 0u || others > 0u); turn++) {
-        for (var place = begin; place < end; place++) {
-            var triangle = place;
-            if hold {
-                triangle = surface_lists[all + place];
-            } else if !may_meet(number, triangle) {
-                continue;
-            }
-            let corners = corners_of(triangle, point);
-            let found = nearest(corners);
-            let reach = reach_of(meeting_with(triangle), largest);
-            let depth = bitcast<f32>(surface_faces[8u * triangle + 7u]);
-            // no number is near nothing
-            if !(length(found.at) <= max(reach, depth)) {
-                continue;
-            }
-            var facing = outside(triangle, point, corners, found, edge_with(triangle));
-            if !facing.there || !(facing.gap >= -depth && facing.gap <= reach) {
-                continue;
-            }
-            if !own_known {
-                own = normal_of_point(number);
-                own_known = true;
-            }
-            // of its own body it may be a face beside its own
-            if surface_faces[8u * triangle + 6u] != surface.body || dot(facing.normal, own) < TURNED_AWAY {
-                facing = at_rim(number, point, own, facing, reach);
-            }
-            facing.turned = dot(facing.normal, own);
-            if !facing.there || facing.turned >= TURNED_AWAY {
-                continue;
-            }
-            if turn == 0u {
-                others += u32(both.first.there);
-                if !both.first.there || is_more_in_way(facing, both.first) {
-                    both.first = facing;
-                }
-            } else if (!both.second.there || facing.gap < both.second.gap) && is_corner(both.first, facing, point) {
-                both.second = facing;
-            }
-        }
-    }
-    if both.first.there {
-        both.first = at_end(number, point, both.first);
-    }
-    if both.second.there {
-        both.second = at_end(number, point, both.second);
-        // both may end outside of the same
-        both.second.there = both.second.triangle != both.first.triangle;
-    }
-    return both;
-}
-
 // How far the end of a normal as long as the thickness has gone in the last step as the surface turned where a point
 // faces it (m), around each node that bears the point.
 fn turned_by(meets: u32, parts: Parts, normal: vec3<f32>) -> vec3<f32> {
@@ -303,26 +210,27 @@ fn sight(point: u32, place: vec3<f32>, facing: Facing) -> Outside {
     return Outside(outside, dot(facing.normal, goes(parts, LAST)));
 }
 
-// How much deeper (m) a point is than motion tells that was so deep before and so far outside (m), of one face that it
-// sees, or of two: twin of `allowed` in systems/surface_contact/gather.rs.
+// How much deeper (m) a point is than motion tells that was so far outside (m), of one face that it sees, or of two:
+// twin of `allowed` in systems/surface_contact/gather.rs.
 fn deeper_than_expected(
-    did: f32, was_in_corner: bool, noted: vec2<f32>, first: Outside, second: Outside, sees_two: bool) -> f32 {
+    did: f32, was_in_corner: bool, last: f32, first: Outside, second: Outside, sees_two: bool) -> f32 {
     let lowest = min(first.now, second.now);
     if did == FREE {
         return lowest;
     }
     if was_in_corner || did == FACES {
-        return lowest - (noted.y - 2.0 * largest_step());
+        return lowest - (last - 2.0 * largest_step());
     }
-    let of_first = first.now - (noted.y + first.went);
-    let of_second = second.now - (noted.y + second.went);
+    let of_first = first.now - (last + first.went);
+    let of_second = second.now - (last + second.went);
     if !sees_two {
         return of_first;
     }
+    let of_new = (second.now - second.went) - (first.now - first.went);
     if abs(of_first) <= abs(of_second) {
-        return min(of_first, second.now - second.went - noted.x);
+        return min(of_first, of_new + max(first.now - first.went, 0.0));
     }
-    return min(of_second, first.now - first.went - noted.x);
+    return min(of_second, max(second.now - second.went, 0.0) - of_new);
 }
 
 // The contact of a point with something that it faces, if it meets that.
@@ -362,8 +270,8 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
             lowest = min(lowest, second.now);
         }
         let settling = settling_of_step(meeting_with(both.first.triangle));
-        let noted = vec2<f32>(before, surface_touch[at + 5u]);
-        let deeper = deeper_than_expected(did, was_in_corner, noted, first, second, both.second.there);
+        let last = surface_touch[at + 5u];
+        let deeper = deeper_than_expected(did, was_in_corner, last, first, second, both.second.there);
         allowed = max(min(before + min(deeper, 0.0) + settling, 0.0), min(lowest, 0.0));
         meet(2u * point, point, place, both.first, first, allowed, slip, did);
         if both.second.there {

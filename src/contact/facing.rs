@@ -4,7 +4,7 @@ mod glance;
 
 use super::candidates::{Candidates, Kept, Listed};
 use super::shortlist::{Lately, MOST, Shortlist, Stays};
-use super::surfaces::{OF_ANGLES, Placed, Point, Surfaces};
+use super::surfaces::{NONE, OF_ANGLES, Placed, Point, Surfaces};
 use crate::mesh::OnTriangle;
 use glam::DVec3;
 use glance::{Glance, Only};
@@ -109,7 +109,8 @@ impl Surfaces {
         }
         let rims = short.may_have_rim(number).then_some(listed);
         faced.first = glance.in_front((triangle, found), (rims, short.is_turned_away(number)), own);
-        true
+        // a wall beside it may be in the way, too
+        faced.first.is_none_or(|first| !self.may_be_in_corner(now, &first))
     }
 
     /// Whether a place is outside of a triangle that is nearest at a part of it: then it is so as far as that is away,
@@ -140,9 +141,8 @@ impl Surfaces {
         let Kept { nearest, around } = kept;
         let mut candidates = Candidates::new((self, now), point.place(now.places), listed, nearest);
         let (triangles, reach, edge) = (listed.triangles, &reach, &edge);
-        let (own, waiting) = (None, None);
-        let faced_so_far = SmallVec::new();
-        let mut way = Way { surfaces: self, now, point, triangles, reach, edge, own, waiting, faced: faced_so_far };
+        let (own, seen, before) = (None, SmallVec::new(), SmallVec::new());
+        let mut way = Way { surfaces: self, now, point, triangles, reach, edge, own, seen, before };
         let mut wakes = f64::INFINITY;
         let mut look = |candidates: &Candidates<'_, '_>, number: usize, triangle: u32| {
             let &(found, distance) = candidates.nearest(number);
@@ -152,9 +152,12 @@ impl Surfaces {
             if distance > reach && distance > depth {
                 return;
             }
-            match candidates.outside(triangle, (found, distance), edge(triangle)) {
-                Some(facing) if facing.gap >= -depth && facing.gap <= reach => way.see(facing),
-                _ => {}
+            let Some(facing) = candidates.outside(triangle, (found, distance), edge(triangle)) else { return };
+            if facing.gap > 0.0 {
+                way.before.push((triangle, facing.gap));
+            }
+            if facing.gap >= -depth && facing.gap <= reach {
+                way.seen.push(facing);
             }
         };
         match short.triangles() {
@@ -231,6 +234,20 @@ impl Surfaces {
         })
     }
 
+    /// A point's own normal.
+    fn own_normal(&self, now: Placed<'_>, point: &Point) -> DVec3 {
+        match point.triangle {
+            Some(triangle) => self.normal_now(now, triangle),
+            None => self.normal_of_node(now, point.nodes[0]),
+        }
+    }
+
+    /// Whether a point inside of a face is so near a side of it, by how deep it is, that it may be behind a wall there,
+    /// too: that rises by 30° at least, so that it is no farther from there than √3 times that.
+    fn may_be_in_corner(&self, now: Placed<'_>, facing: &Facing) -> bool {
+        facing.part == 0 && facing.gap < 0.0 && self.is_near_side(now, facing, -2.0 * facing.gap)
+    }
+
     /// By how much the unit normal of a triangle with sides a, b and area A changes at most, as long as no two nodes
     /// move against each other by more than a distance m: 2 m (a + b + m)/2A.
     pub(super) fn turns(&self, now: Placed<'_>, triangle: u32, moved: f64) -> f64 {
@@ -282,68 +299,95 @@ struct Way<'a, R, E> {
     edge: &'a E,
     /// The point's own normal, once somebody has asked for it.
     own: Option<DVec3>,
-    /// The first that was seen, before anything is asked of it: most points see no other.
-    waiting: Option<Facing>,
-    /// Those that the point faces, each with the cosine between its normal and the point's own.
-    faced: SmallVec<[(Facing, f64); 4]>,
+    /// Those that it sees.
+    seen: SmallVec<[Facing; 4]>,
+    /// Triangles that it is in front of, and how far (m).
+    before: SmallVec<[(u32, f64); 4]>,
 }
 
 impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
-    fn see(&mut self, facing: Facing) {
-        if self.waiting.is_none() && self.own.is_none() {
-            self.waiting = Some(facing);
-            return;
-        }
-        if let Some(first) = self.waiting.take() {
-            self.ask(first);
-        }
-        self.ask(facing);
-    }
-
-    /// Asks whether the point faces it.
-    fn ask(&mut self, facing: Facing) {
-        let Self { surfaces, now, point, edge, .. } = *self;
-        let own = *self.own.get_or_insert_with(|| match point.triangle {
-            Some(triangle) => surfaces.normal_now(now, triangle),
-            None => surfaces.normal_of_node(now, point.nodes[0]),
-        });
-        let listed = (self.triangles, ((self.reach)(facing.triangle), edge(facing.triangle)));
-        let Some(facing) = surfaces.flank(now, (point, || own), listed, facing) else { return };
-        let turned = facing.normal.dot(own);
-        if turned < TURNED_AWAY {
-            self.faced.push((facing, turned));
-        }
-    }
-
-    /// What is in its way: where only one was seen, that it is turned away is all that is asked. Another one is that of
-    /// all walls of a corner with the first which it is least outside of: several triangles of each wall are as near to
-    /// what is behind a node of the line in which walls meet, and of three walls none is left out for long.
+    /// What is in its way: where only one is seen, as by most, that it is turned away is all that is asked. Another one
+    /// is that of all walls of a corner with the first which is most in its way: several triangles of each wall are as
+    /// near to what is behind a node of the line in which walls meet.
     fn finish(mut self) -> [Option<Facing>; 2] {
-        if let Some(only) = self.waiting.take() {
-            let at_rim = self.surfaces.is_at_rim(self.now, &only, (self.edge)(only.triangle));
-            if self.point.triangle.is_none()
-                && !at_rim
-                && self.surfaces.all_turned_away(self.now, self.point.nodes[0], only.normal)
-            {
-                return [Some(only), None];
-            }
-            self.ask(only);
+        let mut seen = std::mem::take(&mut self.seen);
+        seen.retain(|facing| !self.is_behind_another(facing));
+        if let [only] = seen[..]
+            && self.point.triangle.is_none()
+            && !self.surfaces.is_at_rim(self.now, &only, (self.edge)(only.triangle))
+            && self.surfaces.all_turned_away(self.now, self.point.nodes[0], only.normal)
+        {
+            return [Some(only), self.wall_beside(&only)];
         }
-        let first = self.faced.iter().copied().reduce(|most, other| {
-            let edge = self.of_both(&most.0, &other.0);
+        let faced: SmallVec<[(Facing, f64); 4]> = seen.into_iter().filter_map(|facing| self.ask(facing)).collect();
+        let Some(first) = self.most_in_way(faced.iter().copied()) else { return [None; 2] };
+        let walls = faced.iter().copied().filter(|(other, _)| {
+            let edge = self.of_both(first.triangle, other.triangle);
+            self.surfaces.is_corner(self.now.places, self.point, [&first, other], edge)
+        });
+        [Some(first), self.most_in_way(walls).or_else(|| self.wall_beside(&first))]
+    }
+
+    /// The one of some that is most in its way, of such as are alike the first; each with the cosine between its normal
+    /// and the point's own.
+    fn most_in_way(&self, some: impl Iterator<Item = (Facing, f64)>) -> Option<Facing> {
+        let more = |most: (Facing, f64), other: (Facing, f64)| {
+            let edge = self.of_both(most.0.triangle, other.0.triangle);
             let [of_most, of_other] = [most, other].map(|(facing, turned)| in_way(&facing, turned, edge));
             if of_other < of_most { other } else { most }
+        };
+        some.reduce(more).map(|(facing, _)| facing)
+    }
+
+    /// What the point faces of something that it sees, with the cosine between its normal and the point's own, if it
+    /// faces it.
+    fn ask(&mut self, facing: Facing) -> Option<(Facing, f64)> {
+        let Self { surfaces, now, point, edge, .. } = *self;
+        let own = *self.own.get_or_insert_with(|| surfaces.own_normal(now, point));
+        let listed = (self.triangles, ((self.reach)(facing.triangle), edge(facing.triangle)));
+        let facing = surfaces.flank(now, (point, || own), listed, facing)?;
+        let turned = facing.normal.dot(own);
+        (turned < TURNED_AWAY).then_some((facing, turned))
+    }
+
+    /// Whether a point that is deep in a face is outside of the body, beyond what is thin behind that: in front of
+    /// another face of the same body that is nearer.
+    fn is_behind_another(&self, facing: &Facing) -> bool {
+        let (deep, bodies) = (ALIKE * (self.edge)(facing.triangle), &self.surfaces.bodies);
+        let is_nearer = |&(other, gap): &(u32, f64)| {
+            bodies[other as usize] == bodies[facing.triangle as usize] && gap > deep && gap < -facing.gap
+        };
+        facing.gap < -deep && self.before.iter().any(is_nearer)
+    }
+
+    /// The wall beside a face that the point is inside of, if it is behind that, too: what has sunk into a corner that
+    /// opens by more than 90° and goes aside stays behind both until it is in the plane of one.
+    fn wall_beside(&self, first: &Facing) -> Option<Facing> {
+        let Self { surfaces, now, point, .. } = *self;
+        if !surfaces.may_be_in_corner(now, first) {
+            return None;
+        }
+        let (at, own) = (point.place(now.places), self.own.unwrap_or_else(|| surfaces.own_normal(now, point)));
+        let walls = surfaces.beside(first.triangle).into_iter().filter(|&other| other != NONE).filter_map(|triangle| {
+            let (normal, corners) = (surfaces.normal_now(now, triangle), surfaces.corners(now.places, triangle));
+            let (gap, edge) = ((at - corners[0]).dot(normal), self.of_both(first.triangle, triangle));
+            let is_wall = gap < 0.0
+                && gap >= -surfaces.depths[triangle as usize]
+                && normal.dot(own) < TURNED_AWAY
+                && normal.dot(first.normal) < CORNER
+                && surfaces.rises(now.places, triangle, (first.at, first.normal), edge)
+                // what is as near is in every list
+                && self.triangles.binary_search(&triangle).is_ok();
+            let below = at - gap * normal;
+            let weights = || OnTriangle::weights_in_plane(below, corners);
+            is_wall.then(|| Facing { triangle, weights: weights(), at: below, normal, gap, part: 0 })
         });
-        let Some((first, _)) = first else { return [None; 2] };
-        let walls = self.faced.iter().map(|(other, _)| *other).filter(|other| {
-            self.surfaces.is_corner(self.now.places, self.point, [&first, other], self.of_both(&first, other))
-        });
-        [Some(first), walls.reduce(|least, other| if other.gap < least.gap { other } else { least })]
+        walls.reduce(|least, other| if other.gap < least.gap { other } else { least })
     }
 
     /// The length of an edge of two bodies' faces, the smaller one, so that neither is favoured (m).
-    fn of_both(&self, one: &Facing, other: &Facing) -> f64 {
-        f64::min((self.edge)(one.triangle), (self.edge)(other.triangle))
+    fn of_both(&self, one: u32, other: u32) -> f64 {
+        f64::min((self.edge)(one), (self.edge)(other))
     }
 }
 

@@ -177,19 +177,26 @@ impl Surfaces {
         !self.flanks(now, facing, edge).is_empty()
     }
 
+    /// Whether a place on a triangle is nearer to a side than so far (m), or beyond it.
+    #[inline(always)] // with the instructions of whoever asks
+    pub(super) fn is_near_side(&self, now: Placed<'_>, facing: &Facing, near: f64) -> bool {
+        let &Facing { triangle, weights, .. } = facing;
+        let [a, b, c] = self.corners(now.places, triangle);
+        let (twice, opposite) = ((b - a).cross(c - a).length_squared(), [c - b, a - c, b - a]);
+        let is_near =
+            |corner: usize| weights[corner].max(0.0).powi(2) * twice < near * near * opposite[corner].length_squared();
+        (0..3).any(is_near)
+    }
+
     /// The triangles, with their normals, that fall off from one at a rim near a place on it.
     #[inline(always)] // with the instructions of whoever asks
     fn flanks(&self, now: Placed<'_>, facing: &Facing, edge: f64) -> SmallVec<[(u32, DVec3); 8]> {
-        let &Facing { triangle, at, weights, .. } = facing;
+        let &Facing { triangle, at, .. } = facing;
         let (near, mut found) = (ALIKE * edge, SmallVec::new());
-        let [a, b, c] = self.corners(now.places, triangle);
-        let (twice, opposite) = ((b - a).cross(c - a).length_squared(), [c - b, a - c, b - a]);
-        // beyond a side it is near, too
-        let is_near =
-            |corner: usize| weights[corner].max(0.0).powi(2) * twice < near * near * opposite[corner].length_squared();
-        if !(0..3).any(is_near) {
+        if !self.is_near_side(now, facing, near) {
             return found;
         }
+        let [a, b, c] = self.corners(now.places, triangle);
         let (normal, middle) = (self.normal_now(now, triangle), (a + b + c) / 3.0);
         for &node in &self.triangles[triangle as usize] {
             for &other in self.around(node) {

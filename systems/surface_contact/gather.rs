@@ -226,7 +226,8 @@ pub(super) fn allowed<T: Scalar>(touch: &[T], faced: &[Outside], in_step: &InSte
         (Did::Sticks | Did::Slides, [one, other]) if !in_corner => {
             let is_one = unexpected(one).abs() <= unexpected(other).abs();
             let (old, new) = if is_one { (one, other) } else { (other, one) };
-            unexpected(old).min(new.now - new.went - before)
+            // behind the line where both meet it is behind the other as far as in the one, or less
+            unexpected(old).min((new.now - new.went) - (old.now - old.went).min(0.0))
         }
         _ => lowest - (last - 2.0 * in_step.largest),
     };

@@ -114,7 +114,8 @@ impl Shared {
     fn face(&self, points: &Points, world: &World, buffers: &mut dyn Buffers) -> Kernel {
         let kernel = self.kernel("surface_contact", shader!("surface_contact"), points.surface, world);
         let what = if points.of_faces { shader!("surface_point_face") } else { shader!("surface_point_node") };
-        let kernel = self.begins(kernel).fragment(shader!("surface_ends")).fragment(what);
+        let kernel =
+            self.begins(kernel).fragment(shader!("surface_faced")).fragment(shader!("surface_ends")).fragment(what);
         let kernel = kernel.fragment(shader!("surface_motion"));
         self.with_touch(kernel, points, buffers).threads(points.of.count)
     }

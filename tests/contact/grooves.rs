@@ -82,13 +82,13 @@ fn write_groove(path: &Path) {
 /// Writes a plate on two knives along y, with edges of 40° at x = ±12 mm and z = 0: it cannot topple in two grooves.
 fn write_knives(path: &Path) {
     let mut mesh = Written::default();
-    let half = 0.006 * 20.0_f64.to_radians().tan();
+    let half = 0.009 * 20.0_f64.to_radians().tan();
     let slices: Vec<[usize; 10]> = (0..=8)
         .map(|j| {
             let y = 0.006 + 0.018 * f64::from(j) / 8.0;
             let x = [-0.012 - half, -0.012 + half, 0.012 - half, 0.012 + half];
             let edges = [-0.012, 0.012].map(|x| mesh.node([x, y, 0.0]));
-            let [low, high] = [0.006, 0.009].map(|z| x.map(|x| mesh.node([x, y, z])));
+            let [low, high] = [0.009, 0.012].map(|z| x.map(|x| mesh.node([x, y, z])));
             [edges.as_slice(), &low, &high].concat().try_into().unwrap()
         })
         .collect();

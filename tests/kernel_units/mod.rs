@@ -135,6 +135,7 @@ pub const SURFACES: [&str; 22] = [
     "surface_contacts",
     "surface_contacts_of",
     "surface_ends",
+    "surface_faced",
     "surface_facing",
     "surface_lists",
     "surface_motion",

@@ -169,18 +169,52 @@ fn before_a_node_of_the_line_both_walls_are_faced() {
     }
 }
 
-/// What is in a corner of three walls faces the one that it is least deep in, and the one that it is deepest in.
+/// What has sunk into a corner that opens by 120° and goes aside stays behind both walls until it is in the plane of
+/// one: let go all at once, it would have no rest where that wall is needed.
 #[test]
-fn of_three_walls_the_deepest_is_not_left_out() {
-    let o = (0.0, 0.0, 0.0);
-    let [x, y, z] = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)];
-    let cone = [(-0.01, -0.02, -0.03), (1.0, 1.0, 0.2), (0.2, 1.0, 1.0), (1.0, 0.2, 1.0)];
-    let places: Vec<DVec3> = [o, x, y, z].into_iter().chain(cone).map(DVec3::from).collect();
-    let triangles = vec![[0, 2, 3], [0, 3, 1], [0, 1, 2], [4, 6, 5], [4, 7, 6], [4, 5, 7]];
-    let surfaces = Surfaces::new(8, triangles, vec![0, 0, 0, 1, 1, 1], vec![0.5; 6]);
-    let faced = faced(&surfaces, &places, &Point::node(1, 4), &[0, 1, 2], |_| 0.2);
-    let gaps = [faced.first, faced.second].map(|facing| facing.map_or(f64::NAN, |facing| facing.gap));
-    assert!((gaps[0] + 0.01).abs() < 1e-12 && (gaps[1] + 0.03).abs() < 1e-12, "{faced:?}");
+fn a_wide_corner_does_not_let_go_at_once() {
+    let (out, up) = 60.0_f64.to_radians().sin_cos();
+    let line = [(0.0, -1.0, 0.0), (0.0, 2.0, 0.0)];
+    let walls = [(out, 0.3, up), (-out, 0.3, up)];
+    let gaps = |aside: f64| {
+        let cone = [(aside, 0.0, -0.01), (1.0, 0.0, 1.0), (-0.5, 1.0, 1.0), (-0.5, -1.0, 1.0)];
+        let places: Vec<DVec3> = line.into_iter().chain(walls).chain(cone).map(DVec3::from).collect();
+        let triangles = vec![[0, 2, 1], [0, 1, 3], [4, 6, 5], [4, 7, 6], [4, 5, 7]];
+        let surfaces = Surfaces::new(8, triangles, vec![0, 0, 1, 1, 1], vec![0.5; 5]);
+        let faced = faced(&surfaces, &places, &Point::node(1, 4), &[0, 1], |_| 0.2);
+        let mut gaps = [0.0; 2];
+        for facing in [faced.first, faced.second].into_iter().flatten() {
+            gaps[facing.triangle as usize] = facing.gap.min(0.0);
+        }
+        gaps
+    };
+    let mut before = gaps(-0.025);
+    for step in -249..250 {
+        let now = gaps(f64::from(step) * 1e-4);
+        // each goes on by no more than the point
+        assert!(now.iter().zip(before).all(|(now, before)| (now - before).abs() < 1.01e-4), "{before:?} to {now:?}");
+        before = now;
+    }
+    assert!(gaps(0.0).iter().all(|gap| (gap + 0.01 * out).abs() < 1e-12) && gaps(0.018)[1] == 0.0, "{:?}", gaps(0.0));
+}
+
+/// What is beside the thin edge of a wedge, and nearer to the flank before it, is not inside of the flank behind that.
+#[test]
+fn beyond_what_is_thin_is_not_inside() {
+    // an edge down along y; flanks of 20° to the vertical
+    let (half, high) = 20.0_f64.to_radians().sin_cos();
+    let wedge = [(0.0, -1.0, 0.0), (0.0, 1.0, 0.0), (half, 0.0, high), (-half, 0.0, high)];
+    // a face that rises by 30° to the left looks up and to the right
+    let (out, up) = 30.0_f64.to_radians().sin_cos();
+    let own = [(-0.2 * up, 0.0, 0.2 * out), (-0.4 * up, -0.3, 0.4 * out), (-0.4 * up, 0.3, 0.4 * out)];
+    let places: Vec<DVec3> = wedge.into_iter().chain(own).map(DVec3::from).collect();
+    let triangles = vec![[0, 1, 2], [0, 3, 1], [4, 6, 5]];
+    let surfaces = Surfaces::new(7, triangles, vec![0, 0, 1], vec![0.5; 3]);
+    let normals = [0, 1, 2].map(|triangle| surfaces.normal(&places, triangle));
+    assert!(normals[0].z < 0.0 && normals[1].z < 0.0 && normals[2].z > 0.0, "{normals:?}");
+    assert!(normals[2].dot(normals[0]) < TURNED_AWAY, "it would face the far flank");
+    let faced = faced(&surfaces, &places, &Point::node(1, 4), &[0, 1], |_| 0.01);
+    assert_eq!((faced.first, faced.second), (None, None));
 }
 
 /// A floor and a slope beside it, up by 25° or down by 60°, and a point that looks straight down. In front of both it

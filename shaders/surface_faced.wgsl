@@ -1,0 +1,165 @@
+// Which of the faces that a point sees are in its way; twin of src/contact/facing.rs.
+
+// Whether two faces are walls of a corner that the point is in, and the first is not behind the second.
+fn is_corner(first: Facing, second: Facing, point: vec3<f32>) -> bool {
+    let edge = min(edge_with(first.triangle), edge_with(second.triangle));
+    let is_before = dot(second.normal, first.at - second.at) > -ALIKE * edge;
+    return dot(first.normal, second.normal) < CORNER && is_before && rises(first, second, point, edge);
+}
+
+// How little a face is in a point's way.
+fn in_way(facing: Facing, edge: f32) -> f32 {
+    let inside = max(-facing.gap, 0.0) + ALIKE * edge;
+    return max(facing.gap, 0.0) + inside * (1.0 + TURNED_AWAY + facing.turned);
+}
+
+// Whether a face is more in a point's way than another.
+fn is_more_in_way(facing: Facing, other: Facing) -> bool {
+    let edge = min(edge_with(facing.triangle), edge_with(other.triangle));
+    return in_way(facing, edge) < in_way(other, edge);
+}
+
+struct Faced {
+    first: Facing,
+    second: Facing,
+}
+
+// Whether a point that is deep in a face is outside of the body, beyond what is thin behind that: in front of another
+// face of the same body that is nearer.
+fn is_behind_another(number: u32, point: vec3<f32>, facing: Facing, places: vec2<u32>, largest: f32) -> bool {
+    let edge = edge_with(facing.triangle);
+    if facing.gap >= -ALIKE * edge {
+        return false;
+    }
+    let all = surface.list + surface.items + 1u;
+    let hold = lists_hold();
+    let body = surface_faces[8u * facing.triangle + 6u];
+    for (var place = places.x; place < places.y; place++) {
+        let triangle = select(place, surface_lists[all + place], hold);
+        if surface_faces[8u * triangle + 6u] != body || !(hold || may_meet(number, triangle)) {
+            continue;
+        }
+        let corners = corners_of(triangle, point);
+        let found = nearest(corners);
+        if length(found.at) >= -facing.gap {
+            continue;
+        }
+        let other = outside(triangle, point, corners, found, edge);
+        if other.there && other.gap > ALIKE * edge {
+            return true;
+        }
+    }
+    return false;
+}
+
+// The wall beside a face that a point is inside of, if it is behind that, too: what has sunk into a corner that opens
+// by more than 90° and goes aside stays behind both until it is in the plane of one.
+fn wall_beside(number: u32, point: vec3<f32>, first: Facing, own: vec3<f32>) -> Facing {
+    var wall: Facing;
+    wall.there = false;
+    if first.part != 0u || !(first.gap < 0.0) {
+        return wall;
+    }
+    for (var side = 0u; side < 3u; side++) {
+        let other = surface_faces[8u * first.triangle + 3u + side];
+        if other == NONE || !may_meet(number, other) {
+            continue;
+        }
+        let corners = corners_of(other, point);
+        let normal = normal_of(corners);
+        let gap = -dot(corners[0], normal);
+        let is_deepest = gap < 0.0 && (!wall.there || gap < wall.gap);
+        let depth = bitcast<f32>(surface_faces[8u * other + 7u]);
+        if !is_deepest || gap < -depth || dot(normal, own) >= TURNED_AWAY
+            || !rises_beside(other, point, first.at, first.normal, edge_with(other)) {
+            continue;
+        }
+        let below = -gap * normal;
+        wall.triangle = other;
+        wall.weights = weights_in_plane(array<vec3<f32>, 3>(
+            corners[0] - below, corners[1] - below, corners[2] - below));
+        wall.at = below;
+        wall.normal = normal;
+        wall.gap = gap;
+        wall.part = 0u;
+        wall.turned = dot(normal, own);
+        wall.there = true;
+    }
+    return wall;
+}
+
+// The face that is most in a point's way, and of those that are walls of a corner with it the one that is: several
+// triangles of each wall are as near to what is behind a node of the line in which walls meet.
+fn faced(number: u32, point: vec3<f32>) -> Faced {
+    let hold = lists_hold();
+    let starts = surface.list + number;
+    let all = surface.list + surface.items + 1u;
+    let begin = select(0u, surface_lists[starts], hold);
+    let end = select(surface.triangles, surface_lists[starts + 1u], hold);
+    let largest = largest_step();
+    var both: Faced;
+    both.first.there = false;
+    both.second.there = false;
+    var own = vec3<f32>(0.0);
+    var own_known = false;
+    var others = 0u;
+    // the walls are looked for once the first is known, of those that face more than one
+    for (var turn = 0u; turn < 2u && (turn == 0u || others > 0u); turn++) {
+        for (var place = begin; place < end; place++) {
+            var triangle = place;
+            if hold {
+                triangle = surface_lists[all + place];
+            } else if !may_meet(number, triangle) {
+                continue;
+            }
+            let corners = corners_of(triangle, point);
+            let found = nearest(corners);
+            let reach = reach_of(meeting_with(triangle), largest);
+            let depth = bitcast<f32>(surface_faces[8u * triangle + 7u]);
+            // no number is near nothing
+            if !(length(found.at) <= max(reach, depth)) {
+                continue;
+            }
+            var facing = outside(triangle, point, corners, found, edge_with(triangle));
+            if !facing.there || !(facing.gap >= -depth && facing.gap <= reach) {
+                continue;
+            }
+            if is_behind_another(number, point, facing, vec2<u32>(begin, end), largest) {
+                continue;
+            }
+            if !own_known {
+                own = normal_of_point(number);
+                own_known = true;
+            }
+            // of its own body it may be a face beside its own
+            if surface_faces[8u * triangle + 6u] != surface.body || dot(facing.normal, own) < TURNED_AWAY {
+                facing = at_rim(number, point, own, facing, reach);
+            }
+            facing.turned = dot(facing.normal, own);
+            if !facing.there || facing.turned >= TURNED_AWAY {
+                continue;
+            }
+            if turn == 0u {
+                others += u32(both.first.there);
+                if !both.first.there || is_more_in_way(facing, both.first) {
+                    both.first = facing;
+                }
+            } else if is_corner(both.first, facing, point)
+                && (!both.second.there || is_more_in_way(facing, both.second)) {
+                both.second = facing;
+            }
+        }
+    }
+    if both.first.there && !both.second.there {
+        both.second = wall_beside(number, point, both.first, own);
+    }
+    if both.first.there {
+        both.first = at_end(number, point, both.first);
+    }
+    if both.second.there {
+        both.second = at_end(number, point, both.second);
+        // both may end outside of the same
+        both.second.there = both.second.triangle != both.first.triangle;
+    }
+    return both;
+}
