@@ -214,7 +214,7 @@ fn sight(point: u32, place: vec3<f32>, facing: Facing) -> Outside {
 // twin of `allowed` in systems/surface_contact/gather.rs.
 fn deeper_than_expected(
     did: f32, was_in_corner: bool, last: f32, first: Outside, second: Outside, sees_two: bool) -> f32 {
-    let lowest = min(first.now, second.now);
+    let lowest = min(first.now, select(first.now, second.now, sees_two));
     if did == FREE {
         return lowest;
     }
@@ -259,6 +259,7 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     let did = surface_touch[at + 4u] - select(0.0, IN_CORNER, was_in_corner);
     begin_none(2u * point);
     begin_none(2u * point + 1u);
+    let in_corner = both.first.there && both.second.there && !both.is_tip;
     var allowed = 0.0;
     var lowest = 0.0;
     if both.first.there {
@@ -267,21 +268,26 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
         var second = first;
         if both.second.there {
             second = sight(point, place, both.second);
+        }
+        if in_corner {
             lowest = min(lowest, second.now);
         }
         let settling = settling_of_step(meeting_with(both.first.triangle));
         let last = surface_touch[at + 5u];
-        let deeper = deeper_than_expected(did, was_in_corner, last, first, second, both.second.there);
+        let deeper = deeper_than_expected(did, was_in_corner, last, first, second, in_corner);
         allowed = max(min(before + min(deeper, 0.0) + settling, 0.0), min(lowest, 0.0));
         meet(2u * point, point, place, both.first, first, allowed, slip, did);
         if both.second.there {
-            meet(2u * point + 1u, point, place, both.second, second, allowed, slip, did);
+            // of a tip's it is not known how the point got there; springs press it out all the same
+            let springs = meeting_number(meeting_with(both.second.triangle), 4u) > 0.0;
+            let let_in = select(min(second.now + settling, 0.0), 0.0, springs);
+            meet(2u * point + 1u, point, place, both.second, second, select(let_in, allowed, in_corner), slip, did);
         }
     }
     for (var k = 0u; k < 3u; k++) {
         surface_touch[at + k] = 0.0;
     }
     surface_touch[at + 3u] = allowed;
-    surface_touch[at + 4u] = select(FREE, FACES, both.first.there) + select(0.0, IN_CORNER, both.second.there);
+    surface_touch[at + 4u] = select(FREE, FACES, both.first.there) + select(0.0, IN_CORNER, in_corner);
     surface_touch[at + 5u] = lowest;
 }

@@ -22,6 +22,7 @@ fn is_more_in_way(facing: Facing, other: Facing) -> bool {
 struct Faced {
     first: Facing,
     second: Facing,
+    is_tip: bool, // whether there is a third wall, which does not count
 }
 
 // Whether a point that is deep in a face is outside of the body, beyond what is thin behind that: in front of another
@@ -53,37 +54,40 @@ fn is_behind_another(number: u32, point: vec3<f32>, facing: Facing, places: vec2
 }
 
 // The wall beside a face that a point is inside of, if it is behind that, too: what has sunk into a corner that opens
-// by more than 90° and goes aside stays behind both until it is in the plane of one.
+// by more than 90° and goes aside stays behind both until it is in the plane of one. Of all walls around the face that
+// is the one that is most in its way.
 fn wall_beside(number: u32, point: vec3<f32>, first: Facing, own: vec3<f32>) -> Facing {
     var wall: Facing;
     wall.there = false;
     if first.part != 0u || !(first.gap < 0.0) {
         return wall;
     }
-    for (var side = 0u; side < 3u; side++) {
-        let other = surface_faces[8u * first.triangle + 3u + side];
-        if other == NONE || !may_meet(number, other) {
-            continue;
+    for (var corner = 0u; corner < 3u; corner++) {
+        let node = surface_faces[8u * first.triangle + corner];
+        let starts = surface.around + node;
+        let all_around = surface.around + surface.nodes + 1u;
+        for (var place = surface_faces[starts]; place < surface_faces[starts + 1u]; place++) {
+            let other = surface_faces[all_around + place];
+            let corners = corners_of(other, point);
+            var facing: Facing;
+            facing.triangle = other;
+            facing.normal = normal_of(corners);
+            facing.gap = -dot(corners[0], facing.normal);
+            facing.at = -facing.gap * facing.normal;
+            facing.part = 0u;
+            facing.turned = dot(facing.normal, own);
+            facing.there = true;
+            let depth = bitcast<f32>(surface_faces[8u * other + 7u]);
+            if !(facing.gap < 0.0 && facing.gap >= -depth) || facing.turned >= TURNED_AWAY
+                || (wall.there && !is_more_in_way(facing, wall))
+                || !(length(nearest(corners).at) <= max(depth, reach_of(meeting_with(other), largest_step())))
+                || !rises_beside(other, point, first.at, first.normal, edge_with(other)) || !may_meet(number, other) {
+                continue;
+            }
+            facing.weights = weights_in_plane(array<vec3<f32>, 3>(
+                corners[0] - facing.at, corners[1] - facing.at, corners[2] - facing.at));
+            wall = facing;
         }
-        let corners = corners_of(other, point);
-        let normal = normal_of(corners);
-        let gap = -dot(corners[0], normal);
-        let is_deepest = gap < 0.0 && (!wall.there || gap < wall.gap);
-        let depth = bitcast<f32>(surface_faces[8u * other + 7u]);
-        if !is_deepest || gap < -depth || dot(normal, own) >= TURNED_AWAY
-            || !rises_beside(other, point, first.at, first.normal, edge_with(other)) {
-            continue;
-        }
-        let below = -gap * normal;
-        wall.triangle = other;
-        wall.weights = weights_in_plane(array<vec3<f32>, 3>(
-            corners[0] - below, corners[1] - below, corners[2] - below));
-        wall.at = below;
-        wall.normal = normal;
-        wall.gap = gap;
-        wall.part = 0u;
-        wall.turned = dot(normal, own);
-        wall.there = true;
     }
     return wall;
 }
@@ -100,6 +104,7 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
     var both: Faced;
     both.first.there = false;
     both.second.there = false;
+    both.is_tip = false;
     var own = vec3<f32>(0.0);
     var own_known = false;
     var others = 0u;
@@ -144,9 +149,12 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
                 if !both.first.there || is_more_in_way(facing, both.first) {
                     both.first = facing;
                 }
-            } else if is_corner(both.first, facing, point)
-                && (!both.second.there || is_more_in_way(facing, both.second)) {
-                both.second = facing;
+            } else if is_corner(both.first, facing, point) {
+                both.is_tip = both.is_tip
+                    || (both.second.there && dot(facing.normal, both.second.normal) < CORNER);
+                if !both.second.there || is_more_in_way(facing, both.second) {
+                    both.second = facing;
+                }
             }
         }
     }

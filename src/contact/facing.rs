@@ -4,7 +4,7 @@ mod glance;
 
 use super::candidates::{Candidates, Kept, Listed};
 use super::shortlist::{Lately, MOST, Shortlist, Stays};
-use super::surfaces::{NONE, OF_ANGLES, Placed, Point, Surfaces};
+use super::surfaces::{OF_ANGLES, Placed, Point, Surfaces};
 use crate::mesh::OnTriangle;
 use glam::DVec3;
 use glance::{Glance, Only};
@@ -62,13 +62,15 @@ pub struct Faced {
     pub first: Option<Facing>,
     /// Another one.
     pub second: Option<Facing>,
+    /// Whether there is a third, which does not count.
+    pub is_tip: bool,
     /// So much nearer than when the list was made (m) something must come before there is anything to see.
     pub wakes: f64,
 }
 
 impl Faced {
     /// Nothing, which nothing changes.
-    pub const NOTHING: Self = Self { first: None, second: None, wakes: f64::INFINITY };
+    pub const NOTHING: Self = Self { first: None, second: None, is_tip: false, wakes: f64::INFINITY };
 
     /// Whether any normal is the way from a side or a corner.
     #[inline(always)] // with the instructions of whoever asks
@@ -91,7 +93,7 @@ impl Surfaces {
         (lately, faced, own): (Lately, &mut Faced, &mut Own),
     ) -> bool {
         let Some((triangles, first)) = short.triangles_now(lately) else { return false };
-        (faced.first, faced.second, faced.wakes) = (None, None, short.wakes);
+        *faced = Faced { wakes: short.wakes, ..Faced::NOTHING };
         if triangles.is_empty() {
             return true;
         }
@@ -200,8 +202,7 @@ impl Surfaces {
                 wakes = (0..listed.triangles.len()).map(nearest).fold(wakes, f64::min);
             }
         }
-        let [first, second] = way.finish();
-        *faced = Faced { first, second, wakes: wakes.min(short.wakes) };
+        *faced = Faced { wakes: wakes.min(short.wakes), ..way.finish() };
     }
 
     /// Whether two faces are walls of a corner that the point is in: the second rises before the first. A node on an
@@ -306,10 +307,9 @@ struct Way<'a, R, E> {
 }
 
 impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
-    /// What is in its way: where only one is seen, as by most, that it is turned away is all that is asked. Another one
-    /// is that of all walls of a corner with the first which is most in its way: several triangles of each wall are as
-    /// near to what is behind a node of the line in which walls meet.
-    fn finish(mut self) -> [Option<Facing>; 2] {
+    /// What is in its way: where only one is seen, that it is turned away is all that is asked. Another one is that of
+    /// all walls of a corner with the first which is most in its way: before a node several triangles are as near.
+    fn finish(mut self) -> Faced {
         let mut seen = std::mem::take(&mut self.seen);
         seen.retain(|facing| !self.is_behind_another(facing));
         if let [only] = seen[..]
@@ -317,19 +317,21 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
             && !self.surfaces.is_at_rim(self.now, &only, (self.edge)(only.triangle))
             && self.surfaces.all_turned_away(self.now, self.point.nodes[0], only.normal)
         {
-            return [Some(only), self.wall_beside(&only)];
+            return Faced { first: Some(only), second: self.wall_beside(&only), ..Faced::NOTHING };
         }
         let faced: SmallVec<[(Facing, f64); 4]> = seen.into_iter().filter_map(|facing| self.ask(facing)).collect();
-        let Some(first) = self.most_in_way(faced.iter().copied()) else { return [None; 2] };
-        let walls = faced.iter().copied().filter(|(other, _)| {
+        let Some(first) = self.most_in_way(faced.iter().copied()) else { return Faced::NOTHING };
+        let is_wall = |(other, _): &(Facing, f64)| {
             let edge = self.of_both(first.triangle, other.triangle);
             self.surfaces.is_corner(self.now.places, self.point, [&first, other], edge)
-        });
-        [Some(first), self.most_in_way(walls).or_else(|| self.wall_beside(&first))]
+        };
+        let walls: SmallVec<[(Facing, f64); 4]> = faced.into_iter().filter(is_wall).collect();
+        let second = self.most_in_way(walls.iter().copied()).or_else(|| self.wall_beside(&first));
+        let is_third = |second: Facing| walls.iter().any(|(other, _)| other.normal.dot(second.normal) < CORNER);
+        Faced { first: Some(first), second, is_tip: second.is_some_and(is_third), ..Faced::NOTHING }
     }
 
-    /// The one of some that is most in its way, of such as are alike the first; each with the cosine between its normal
-    /// and the point's own.
+    /// The one of some that is most in its way, each with the cosine between its normal and the point's own.
     fn most_in_way(&self, some: impl Iterator<Item = (Facing, f64)>) -> Option<Facing> {
         let more = |most: (Facing, f64), other: (Facing, f64)| {
             let edge = self.of_both(most.0.triangle, other.0.triangle);
@@ -360,7 +362,7 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
         facing.gap < -deep && self.before.iter().any(is_nearer)
     }
 
-    /// The wall beside a face that the point is inside of, if it is behind that, too: what has sunk into a corner that
+    /// The wall around a face that the point is inside of, if it is behind that, too: what has sunk into a corner that
     /// opens by more than 90° and goes aside stays behind both until it is in the plane of one.
     fn wall_beside(&self, first: &Facing) -> Option<Facing> {
         let Self { surfaces, now, point, .. } = *self;
@@ -368,21 +370,24 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
             return None;
         }
         let (at, own) = (point.place(now.places), self.own.unwrap_or_else(|| surfaces.own_normal(now, point)));
-        let walls = surfaces.beside(first.triangle).into_iter().filter(|&other| other != NONE).filter_map(|triangle| {
+        let around = surfaces.triangles[first.triangle as usize].iter().flat_map(|&node| surfaces.around(node));
+        let walls = around.filter_map(|&triangle| {
             let (normal, corners) = (surfaces.normal_now(now, triangle), surfaces.corners(now.places, triangle));
             let (gap, edge) = ((at - corners[0]).dot(normal), self.of_both(first.triangle, triangle));
+            let (depth, reach) = (surfaces.depths[triangle as usize], (self.reach)(triangle));
             let is_wall = gap < 0.0
-                && gap >= -surfaces.depths[triangle as usize]
+                && gap >= -depth
                 && normal.dot(own) < TURNED_AWAY
                 && normal.dot(first.normal) < CORNER
                 && surfaces.rises(now.places, triangle, (first.at, first.normal), edge)
                 // what is as near is in every list
+                && at.distance(OnTriangle::nearest(at, corners).at) <= f64::max(depth, reach)
                 && self.triangles.binary_search(&triangle).is_ok();
             let below = at - gap * normal;
             let weights = || OnTriangle::weights_in_plane(below, corners);
-            is_wall.then(|| Facing { triangle, weights: weights(), at: below, normal, gap, part: 0 })
+            is_wall.then(|| (Facing { triangle, weights: weights(), at: below, normal, gap, part: 0 }, normal.dot(own)))
         });
-        walls.reduce(|least, other| if other.gap < least.gap { other } else { least })
+        self.most_in_way(walls)
     }
 
     /// The length of an edge of two bodies' faces, the smaller one, so that neither is favoured (m).

@@ -258,23 +258,25 @@ pub(super) fn gather<T: Scalar>(
         let sight = nodes.sight(contacts, of, first);
         // as it is kept
         let allowed = |faced: &[Outside]| T::from_f64(allowed(touch, faced, &in_step)).to_f64();
-        let mut meet = |sight: Sight<'_>, seen: &Seen| {
-            nodes.meet((contacts, of_bodies), (sight, touch), seen, batch);
+        let mut meet = |sight: Sight<'_>, allowed: f64| {
+            nodes.meet((contacts, of_bodies), (sight, touch), (point, allowed), batch);
         };
-        match &faced.second {
-            None => {
-                let (outside, allowed) = (sight.outside.now, allowed(&[sight.outside]));
-                seen.push(Seen { point, outside, allowed, in_corner: false });
-                meet(sight, &seen[seen.len() - 1]);
+        let other = faced.second.as_ref().map(|second| nodes.sight(contacts, of, second));
+        let in_corner = other.is_some() && !faced.is_tip;
+        let (outside, allowed) = match &other {
+            Some(other) if in_corner => {
+                (sight.outside.now.min(other.outside.now), allowed(&[sight.outside, other.outside]))
             }
-            Some(second) => {
-                let other = nodes.sight(contacts, of, second);
-                let outside = sight.outside.now.min(other.outside.now);
-                let allowed = allowed(&[sight.outside, other.outside]);
-                seen.push(Seen { point, outside, allowed, in_corner: true });
-                meet(sight, &seen[seen.len() - 1]);
-                meet(other, &seen[seen.len() - 1]);
-            }
+            _ => (sight.outside.now, allowed(&[sight.outside])),
+        };
+        seen.push(Seen { point, outside, allowed, in_corner });
+        meet(sight, allowed);
+        if let Some(other) = other {
+            // of a tip's it is not known how the point got there; springs press it out all the same
+            let body = contacts.surface.triangles.bodies[other.facing.triangle as usize];
+            let springs = contacts.meeting(of.body, body).is_some_and(|meeting| meeting.spring.is_some());
+            let let_in = if springs { 0.0 } else { (other.outside.now + in_step.settling).min(0.0) };
+            meet(other, if in_corner { allowed } else { let_in });
         }
     });
     for &Seen { point, outside, allowed, in_corner } in seen.iter().flatten() {
@@ -330,7 +332,7 @@ impl Nodes<'_> {
         &self,
         (contacts, bodies): (&SurfaceContacts, &[BodySlices<'_, T>]),
         (Sight { facing, parts, outside }, touch): (Sight<'_>, &[T]),
-        &Seen { point: number, allowed, .. }: &Seen,
+        (number, allowed): (u32, f64),
         batch: &mut Vec<Contact>,
     ) {
         let surface = &contacts.surface;

@@ -120,7 +120,7 @@ pub fn of_tools() -> Vec<String> {
 }
 
 /// Parts of `surface_contact`.
-pub const SURFACES: [&str; 22] = [
+pub const SURFACES: [&str; 23] = [
     "surface_contact_apply",
     "surface_contact_begin",
     "surface_contact_edges",

@@ -231,8 +231,8 @@ fn what_waits_for_its_burst_is_told() {
             (gone(&mut simulation), simulation.tool("tip").unwrap().waiting)
         };
         let (gone, waiting) = of(1);
-        // in the first step nobody has looked yet; a cell that is not whole and ten steps are no matter of `burst`
-        let (taken, usual) = (199.0 * 2e-4 * 3e-5, CELL + 10.0 * 2e-4 * 3e-5);
+        // nobody has looked since the 190th step; a cell that is not whole and ten steps are no matter of `burst`
+        let (taken, usual) = (190.0 * 2e-4 * 3e-5, CELL + 10.0 * 2e-4 * 3e-5);
         near(run.name, waiting, taken - gone - usual, taken, 1e-3);
         assert!(gone < 0.3 * taken, "{}: {gone} of {taken}", run.name);
         assert_eq!(of(64).1, 0.0, "{}", run.name);

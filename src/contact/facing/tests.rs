@@ -174,17 +174,20 @@ fn before_a_node_of_the_line_both_walls_are_faced() {
 #[test]
 fn a_wide_corner_does_not_let_go_at_once() {
     let (out, up) = 60.0_f64.to_radians().sin_cos();
-    let line = [(0.0, -1.0, 0.0), (0.0, 2.0, 0.0)];
-    let walls = [(out, 0.3, up), (-out, 0.3, up)];
+    let line = [(0.0, -1.0, 0.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)];
+    let walls = [(out, -1.0, up), (out, 1.0, up), (-out, -1.0, up), (-out, 1.0, up)];
+    let right = [[1, 0, 3], [1, 3, 4], [1, 4, 2]];
+    let left = [[1, 5, 0], [1, 6, 5], [1, 2, 6]];
+    // it comes before a node of the line, where some triangles of walls have but a corner
     let gaps = |aside: f64| {
-        let cone = [(aside, 0.0, -0.01), (1.0, 0.0, 1.0), (-0.5, 1.0, 1.0), (-0.5, -1.0, 1.0)];
+        let cone = [(aside, 0.01, -0.01), (1.0, 0.0, 1.0), (-0.5, 1.0, 1.0), (-0.5, -1.0, 1.0)];
         let places: Vec<DVec3> = line.into_iter().chain(walls).chain(cone).map(DVec3::from).collect();
-        let triangles = vec![[0, 2, 1], [0, 1, 3], [4, 6, 5], [4, 7, 6], [4, 5, 7]];
-        let surfaces = Surfaces::new(8, triangles, vec![0, 0, 1, 1, 1], vec![0.5; 5]);
-        let faced = faced(&surfaces, &places, &Point::node(1, 4), &[0, 1], |_| 0.2);
+        let triangles = [&right[..], &left, &[[7, 9, 8], [7, 10, 9], [7, 8, 10]]].concat();
+        let surfaces = Surfaces::new(11, triangles, vec![0, 0, 0, 0, 0, 0, 1, 1, 1], vec![0.5; 9]);
+        let faced = faced(&surfaces, &places, &Point::node(1, 7), &[0, 1, 2, 3, 4, 5], |_| 0.2);
         let mut gaps = [0.0; 2];
         for facing in [faced.first, faced.second].into_iter().flatten() {
-            gaps[facing.triangle as usize] = facing.gap.min(0.0);
+            gaps[facing.triangle as usize / 3] = facing.gap.min(0.0);
         }
         gaps
     };
