@@ -39,11 +39,7 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing, reach: 
     let corners = corners_of(facing.triangle, point);
     let edge = edge_with(facing.triangle);
     let near = ALIKE * edge;
-    let twice = length(cross(corners[1] - corners[0], corners[2] - corners[0]));
-    let is_near_side = facing.weights.x * twice < near * length(corners[2] - corners[1])
-        || facing.weights.y * twice < near * length(corners[0] - corners[2])
-        || facing.weights.z * twice < near * length(corners[1] - corners[0]);
-    if !is_near_side {
+    if !is_near_side(facing, corners, near) {
         return facing;
     }
     let normal = normal_of(corners);

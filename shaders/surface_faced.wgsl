@@ -53,13 +53,23 @@ fn is_behind_another(number: u32, point: vec3<f32>, facing: Facing, places: vec2
     return false;
 }
 
+// Whether a place on a triangle is nearer to a side than so far (m), or beyond it.
+fn is_near_side(facing: Facing, corners: array<vec3<f32>, 3>, near: f32) -> bool {
+    let twice = length(cross(corners[1] - corners[0], corners[2] - corners[0]));
+    return facing.weights.x * twice < near * length(corners[2] - corners[1])
+        || facing.weights.y * twice < near * length(corners[0] - corners[2])
+        || facing.weights.z * twice < near * length(corners[1] - corners[0]);
+}
+
 // The wall beside a face that a point is inside of, if it is behind that, too: what has sunk into a corner that opens
 // by more than 90° and goes aside stays behind both until it is in the plane of one. Of all walls around the face that
 // is the one that is most in its way.
 fn wall_beside(number: u32, point: vec3<f32>, first: Facing, own: vec3<f32>) -> Facing {
     var wall: Facing;
     wall.there = false;
-    if first.part != 0u || !(first.gap < 0.0) {
+    // a wall rises by 30° at least, so that the point is no farther from there than √3 times as deep as it is
+    if first.part != 0u || !(first.gap < 0.0)
+        || !is_near_side(first, corners_of(first.triangle, point), -2.0 * first.gap) {
         return wall;
     }
     for (var corner = 0u; corner < 3u; corner++) {

@@ -248,6 +248,8 @@ fn error_of_a_mass(curve: &Curve, frequency: f64, step: f64, duration: f64) -> f
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
+
     use super::*;
 
     /// A mass of 72 Hz under a load that grows smoothly within seven periods, and under one that is there at once.
