@@ -130,13 +130,11 @@ fn a_closed_skin_that_is_inside_out_is_turned_round_and_told_of() {
             format!("f {}\n", rows.join(" "))
         };
         let text = corners.to_string() + &faces.iter().map(face).collect::<String>();
-        let scene = format!(
-            "(duration: 1, bodies: {{\"b\": (mesh: Box(size: (20, 20, 10), cells: (2, 2, 1)), scale: 1e-3,
-                material: \"m\", skin: (file: \"s.obj\"))}},
-            materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.4))}})",
-        );
+        let scene = "(duration: 1, bodies: {\"b\": (mesh: Box(size: (20, 20, 10), cells: (2, 2, 1)), scale: 1e-3,
+                material: \"m\", skin: (file: \"s.obj\"))},
+            materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.4))})";
         let files = BTreeMap::from([("s.obj".to_string(), text.into_bytes())]);
-        let file = SceneFile::from_memory("s.ron", &scene, files, &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
+        let file = SceneFile::from_memory("s.ron", scene, files, &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
         let mut simulation = start(&configurations()[0], &file);
         let skin = simulation.skin("b").unwrap();
         (skin, simulation.warnings().render(false).contains("s.obj: the surface was inside out, and was turned round"))
