@@ -61,47 +61,6 @@ fn is_near_side(facing: Facing, corners: array<vec3<f32>, 3>, near: f32) -> bool
         || facing.weights.z * twice < near * length(corners[1] - corners[0]);
 }
 
-// The wall beside a face that a point is inside of, if it is behind that, too: what has sunk into a corner that opens
-// by more than 90° and goes aside stays behind both until it is in the plane of one. Of all walls around the face that
-// is the one that is most in its way.
-fn wall_beside(number: u32, point: vec3<f32>, first: Facing, own: vec3<f32>) -> Facing {
-    var wall: Facing;
-    wall.there = false;
-    // a wall rises by 30° at least, so that the point is no farther from there than √3 times as deep as it is
-    if first.part != 0u || !(first.gap < 0.0)
-        || !is_near_side(first, corners_of(first.triangle, point), -2.0 * first.gap) {
-        return wall;
-    }
-    for (var corner = 0u; corner < 3u; corner++) {
-        let node = surface_faces[8u * first.triangle + corner];
-        let starts = surface.around + node;
-        let all_around = surface.around + surface.nodes + 1u;
-        for (var place = surface_faces[starts]; place < surface_faces[starts + 1u]; place++) {
-            let other = surface_faces[all_around + place];
-            let corners = corners_of(other, point);
-            var facing: Facing;
-            facing.triangle = other;
-            facing.normal = normal_of(corners);
-            facing.gap = -dot(corners[0], facing.normal);
-            facing.at = -facing.gap * facing.normal;
-            facing.part = 0u;
-            facing.turned = dot(facing.normal, own);
-            facing.there = true;
-            let depth = bitcast<f32>(surface_faces[8u * other + 7u]);
-            if !(facing.gap < 0.0 && facing.gap >= -depth) || facing.turned >= TURNED_AWAY
-                || (wall.there && !is_more_in_way(facing, wall))
-                || !(length(nearest(corners).at) <= max(depth, reach_of(meeting_with(other), largest_step())))
-                || !rises_beside(other, point, first.at, first.normal, edge_with(other)) || !may_meet(number, other) {
-                continue;
-            }
-            facing.weights = weights_in_plane(array<vec3<f32>, 3>(
-                corners[0] - facing.at, corners[1] - facing.at, corners[2] - facing.at));
-            wall = facing;
-        }
-    }
-    return wall;
-}
-
 // The face that is most in a point's way, and of those that are walls of a corner with it the one that is: several
 // triangles of each wall are as near to what is behind a node of the line in which walls meet.
 fn faced(number: u32, point: vec3<f32>) -> Faced {
@@ -167,9 +126,6 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
                 }
             }
         }
-    }
-    if both.first.there && !both.second.there {
-        both.second = wall_beside(number, point, both.first, own);
     }
     if both.first.there {
         both.first = at_end(number, point, both.first);

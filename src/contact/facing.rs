@@ -111,8 +111,7 @@ impl Surfaces {
         }
         let rims = short.may_have_rim(number).then_some(listed);
         faced.first = glance.in_front((triangle, found), (rims, short.is_turned_away(number)), own);
-        // a wall beside it may be in the way, too
-        faced.first.is_none_or(|first| !self.may_be_in_corner(now, &first))
+        true
     }
 
     /// Whether a place is outside of a triangle that is nearest at a part of it: then it is so as far as that is away,
@@ -243,12 +242,6 @@ impl Surfaces {
         }
     }
 
-    /// Whether a point inside of a face is so near a side of it, by how deep it is, that it may be behind a wall there,
-    /// too: that rises by 30° at least, so that it is no farther from there than √3 times that.
-    fn may_be_in_corner(&self, now: Placed<'_>, facing: &Facing) -> bool {
-        facing.part == 0 && facing.gap < 0.0 && self.is_near_side(now, facing, -2.0 * facing.gap)
-    }
-
     /// By how much the unit normal of a triangle with sides a, b and area A changes at most, as long as no two nodes
     /// move against each other by more than a distance m: 2 m (a + b + m)/2A.
     pub(super) fn turns(&self, now: Placed<'_>, triangle: u32, moved: f64) -> f64 {
@@ -317,7 +310,7 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
             && !self.surfaces.is_at_rim(self.now, &only, (self.edge)(only.triangle))
             && self.surfaces.all_turned_away(self.now, self.point.nodes[0], only.normal)
         {
-            return Faced { first: Some(only), second: self.wall_beside(&only), ..Faced::NOTHING };
+            return Faced { first: Some(only), ..Faced::NOTHING };
         }
         let faced: SmallVec<[(Facing, f64); 4]> = seen.into_iter().filter_map(|facing| self.ask(facing)).collect();
         let Some(first) = self.most_in_way(faced.iter().copied()) else { return Faced::NOTHING };
@@ -326,7 +319,7 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
             self.surfaces.is_corner(self.now.places, self.point, [&first, other], edge)
         };
         let walls: SmallVec<[(Facing, f64); 4]> = faced.into_iter().filter(is_wall).collect();
-        let second = self.most_in_way(walls.iter().copied()).or_else(|| self.wall_beside(&first));
+        let second = self.most_in_way(walls.iter().copied());
         let is_third = |second: Facing| walls.iter().any(|(other, _)| other.normal.dot(second.normal) < CORNER);
         Faced { first: Some(first), second, is_tip: second.is_some_and(is_third), ..Faced::NOTHING }
     }
@@ -360,34 +353,6 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
             bodies[other as usize] == bodies[facing.triangle as usize] && gap > deep && gap < -facing.gap
         };
         facing.gap < -deep && self.before.iter().any(is_nearer)
-    }
-
-    /// The wall around a face that the point is inside of, if it is behind that, too: what has sunk into a corner that
-    /// opens by more than 90° and goes aside stays behind both until it is in the plane of one.
-    fn wall_beside(&self, first: &Facing) -> Option<Facing> {
-        let Self { surfaces, now, point, .. } = *self;
-        if !surfaces.may_be_in_corner(now, first) {
-            return None;
-        }
-        let (at, own) = (point.place(now.places), self.own.unwrap_or_else(|| surfaces.own_normal(now, point)));
-        let around = surfaces.triangles[first.triangle as usize].iter().flat_map(|&node| surfaces.around(node));
-        let walls = around.filter_map(|&triangle| {
-            let (normal, corners) = (surfaces.normal_now(now, triangle), surfaces.corners(now.places, triangle));
-            let (gap, edge) = ((at - corners[0]).dot(normal), self.of_both(first.triangle, triangle));
-            let (depth, reach) = (surfaces.depths[triangle as usize], (self.reach)(triangle));
-            let is_wall = gap < 0.0
-                && gap >= -depth
-                && normal.dot(own) < TURNED_AWAY
-                && normal.dot(first.normal) < CORNER
-                && surfaces.rises(now.places, triangle, (first.at, first.normal), edge)
-                // what is as near is in every list
-                && at.distance(OnTriangle::nearest(at, corners).at) <= f64::max(depth, reach)
-                && self.triangles.binary_search(&triangle).is_ok();
-            let below = at - gap * normal;
-            let weights = || OnTriangle::weights_in_plane(below, corners);
-            is_wall.then(|| (Facing { triangle, weights: weights(), at: below, normal, gap, part: 0 }, normal.dot(own)))
-        });
-        self.most_in_way(walls)
     }
 
     /// The length of an edge of two bodies' faces, the smaller one, so that neither is favoured (m).

@@ -169,38 +169,6 @@ fn before_a_node_of_the_line_both_walls_are_faced() {
     }
 }
 
-/// What has sunk into a corner that opens by 120° and goes aside stays behind both walls until it is in the plane of
-/// one: let go all at once, it would have no rest where that wall is needed.
-#[test]
-fn a_wide_corner_does_not_let_go_at_once() {
-    let (out, up) = 60.0_f64.to_radians().sin_cos();
-    let line = [(0.0, -1.0, 0.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)];
-    let walls = [(out, -1.0, up), (out, 1.0, up), (-out, -1.0, up), (-out, 1.0, up)];
-    let right = [[1, 0, 3], [1, 3, 4], [1, 4, 2]];
-    let left = [[1, 5, 0], [1, 6, 5], [1, 2, 6]];
-    // it comes before a node of the line, where some triangles of walls have but a corner
-    let gaps = |aside: f64| {
-        let cone = [(aside, 0.01, -0.01), (1.0, 0.0, 1.0), (-0.5, 1.0, 1.0), (-0.5, -1.0, 1.0)];
-        let places: Vec<DVec3> = line.into_iter().chain(walls).chain(cone).map(DVec3::from).collect();
-        let triangles = [&right[..], &left, &[[7, 9, 8], [7, 10, 9], [7, 8, 10]]].concat();
-        let surfaces = Surfaces::new(11, triangles, vec![0, 0, 0, 0, 0, 0, 1, 1, 1], vec![0.5; 9]);
-        let faced = faced(&surfaces, &places, &Point::node(1, 7), &[0, 1, 2, 3, 4, 5], |_| 0.2);
-        let mut gaps = [0.0; 2];
-        for facing in [faced.first, faced.second].into_iter().flatten() {
-            gaps[facing.triangle as usize / 3] = facing.gap.min(0.0);
-        }
-        gaps
-    };
-    let mut before = gaps(-0.025);
-    for step in -249..250 {
-        let now = gaps(f64::from(step) * 1e-4);
-        // each goes on by no more than the point
-        assert!(now.iter().zip(before).all(|(now, before)| (now - before).abs() < 1.01e-4), "{before:?} to {now:?}");
-        before = now;
-    }
-    assert!(gaps(0.0).iter().all(|gap| (gap + 0.01 * out).abs() < 1e-12) && gaps(0.018)[1] == 0.0, "{:?}", gaps(0.0));
-}
-
 /// What is beside the thin edge of a wedge, and nearer to the flank before it, is not inside of the flank behind that.
 #[test]
 fn beyond_what_is_thin_is_not_inside() {

@@ -81,8 +81,7 @@ fn shortlists_have_all_that_may_be_faced() {
         }
     }
     assert!(known > 200 && left < 5 * known && faces > 1000, "{known}, {left}, {faces}");
-    // what is inside and near a side is not, for it may be behind a wall there, too
-    assert!(5 * glances > 2 * faces, "{glances} of {faces}");
+    assert!(2 * glances > faces, "{glances} of {faces}");
     // of nodes, three of four of which look at the sheet
     assert!(turned > 100 && turned < left / 2, "{turned} of {left}");
 }
