@@ -119,7 +119,7 @@ fn no_load(file: &SceneFile) -> Option<Diagnostics> {
         return None;
     }
     let (path, note) = match scene.loads.is_empty() {
-        true => ("loads", "loads: [Gravity(acceleration: (0, 0, -9.81))] would be its weight"),
+        true => ("loads", "name what acted while the mesh was measured, such as its weight"),
         false => (
             "loads[0].curve",
             "by their curves loads are 0 then: leave `curve` out of what acted while the mesh was measured",
