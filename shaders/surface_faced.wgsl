@@ -19,15 +19,15 @@ fn is_more_in_way(facing: Facing, other: Facing) -> bool {
     return in_way(facing, edge) < in_way(other, edge);
 }
 
+// The face in a point's way, and where that is a wall of a corner, the others.
 struct Faced {
-    first: Facing,
-    second: Facing,
-    is_tip: bool, // whether there is a third wall, which does not count
+    walls: array<Facing, MOST_WALLS>,
+    count: u32,
 }
 
 // Whether a point that is deep in a face is outside of the body, beyond what is thin behind that: in front of another
 // face of the same body that is nearer.
-fn is_behind_another(number: u32, point: vec3<f32>, facing: Facing, places: vec2<u32>, largest: f32) -> bool {
+fn is_behind_another(number: u32, point: vec3<f32>, facing: Facing, places: vec2<u32>) -> bool {
     let edge = edge_with(facing.triangle);
     if facing.gap >= -ALIKE * edge {
         return false;
@@ -61,8 +61,8 @@ fn is_near_side(facing: Facing, corners: array<vec3<f32>, 3>, near: f32) -> bool
         || facing.weights.z * twice < near * length(corners[1] - corners[0]);
 }
 
-// The face that is most in a point's way, and of those that are walls of a corner with it the one that is: several
-// triangles of each wall are as near to what is behind a node of the line in which walls meet.
+// The face that is most in a point's way, and of those that are walls of a corner with all before the one that is:
+// several triangles of each wall are as near to what is behind a node of the line in which walls meet.
 fn faced(number: u32, point: vec3<f32>) -> Faced {
     let hold = lists_hold();
     let starts = surface.list + number;
@@ -70,15 +70,16 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
     let begin = select(0u, surface_lists[starts], hold);
     let end = select(surface.triangles, surface_lists[starts + 1u], hold);
     let largest = largest_step();
-    var both: Faced;
-    both.first.there = false;
-    both.second.there = false;
-    both.is_tip = false;
     var own = vec3<f32>(0.0);
     var own_known = false;
-    var others = 0u;
-    // the walls are looked for once the first is known, of those that face more than one
-    for (var turn = 0u; turn < 2u && (turn == 0u || others > 0u); turn++) {
+    var seen: Faced;
+    seen.count = 0u;
+    // faces that may be walls beside that which is most in its way
+    var others = 1u;
+    while seen.count < MOST_WALLS && others > 0u {
+        var most: Facing;
+        most.there = false;
+        others = 0u;
         for (var place = begin; place < end; place++) {
             var triangle = place;
             if hold {
@@ -98,7 +99,7 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
             if !facing.there || !(facing.gap >= -depth && facing.gap <= reach) {
                 continue;
             }
-            if is_behind_another(number, point, facing, vec2<u32>(begin, end), largest) {
+            if is_behind_another(number, point, facing, vec2<u32>(begin, end)) {
                 continue;
             }
             if !own_known {
@@ -113,27 +114,36 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
             if !facing.there || facing.turned >= TURNED_AWAY {
                 continue;
             }
-            if turn == 0u {
-                others += u32(both.first.there);
-                if !both.first.there || is_more_in_way(facing, both.first) {
-                    both.first = facing;
-                }
-            } else if is_corner(both.first, facing, point) {
-                both.is_tip = both.is_tip
-                    || (both.second.there && dot(facing.normal, both.second.normal) < CORNER);
-                if !both.second.there || is_more_in_way(facing, both.second) {
-                    both.second = facing;
-                }
+            var is_wall = true;
+            for (var wall = 0u; wall < seen.count && is_wall; wall++) {
+                is_wall = is_corner(seen.walls[wall], facing, point);
+            }
+            if !is_wall {
+                continue;
+            }
+            others += u32(most.there);
+            if !most.there || is_more_in_way(facing, most) {
+                most = facing;
             }
         }
+        if most.there {
+            seen.walls[seen.count] = most;
+            seen.count++;
+        }
     }
-    if both.first.there {
-        both.first = at_end(number, point, both.first);
+    var ends: Faced;
+    ends.count = 0u;
+    for (var wall = 0u; wall < seen.count; wall++) {
+        let end = at_end(number, point, seen.walls[wall]);
+        // several may end outside of the same
+        var is_another = true;
+        for (var other = 0u; other < ends.count; other++) {
+            is_another = is_another && ends.walls[other].triangle != end.triangle;
+        }
+        if is_another {
+            ends.walls[ends.count] = end;
+            ends.count++;
+        }
     }
-    if both.second.there {
-        both.second = at_end(number, point, both.second);
-        // both may end outside of the same
-        both.second.there = both.second.triangle != both.first.triangle;
-    }
-    return both;
+    return ends;
 }

@@ -55,27 +55,26 @@ impl Own {
     }
 }
 
-/// What a point faces: the face in its way, and where that is a wall of a corner, the other.
+/// How many walls of a corner a point may face: more need not bear it.
+pub const MOST_WALLS: usize = 3;
+
+/// What a point faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Faced {
-    /// The face in its way.
-    pub first: Option<Facing>,
-    /// Another one.
-    pub second: Option<Facing>,
-    /// Whether there is a third, which does not count.
-    pub is_tip: bool,
+    /// The face in its way, and where that is a wall of a corner, the others; nothing behind the last.
+    pub walls: [Option<Facing>; MOST_WALLS],
     /// So much nearer than when the list was made (m) something must come before there is anything to see.
     pub wakes: f64,
 }
 
 impl Faced {
     /// Nothing, which nothing changes.
-    pub const NOTHING: Self = Self { first: None, second: None, is_tip: false, wakes: f64::INFINITY };
+    pub const NOTHING: Self = Self { walls: [None; MOST_WALLS], wakes: f64::INFINITY };
 
     /// Whether any normal is the way from a side or a corner.
     #[inline(always)] // with the instructions of whoever asks
     pub fn is_beside(&self) -> bool {
-        [&self.first, &self.second].into_iter().flatten().any(|facing| facing.part != 0)
+        self.walls.iter().flatten().any(|facing| facing.part != 0)
     }
 }
 
@@ -110,7 +109,7 @@ impl Surfaces {
             short.note_alone(is_alone.then_some(number), lately);
         }
         let rims = short.may_have_rim(number).then_some(listed);
-        faced.first = glance.in_front((triangle, found), (rims, short.is_turned_away(number)), own);
+        faced.walls[0] = glance.in_front((triangle, found), (rims, short.is_turned_away(number)), own);
         true
     }
 
@@ -300,8 +299,9 @@ struct Way<'a, R, E> {
 }
 
 impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
-    /// What is in its way: where only one is seen, that it is turned away is all that is asked. Another one is that of
-    /// all walls of a corner with the first which is most in its way: before a node several triangles are as near.
+    /// What is in its way: where only one is seen, that it is turned away is all that is asked. Each further one is that
+    /// of all walls of a corner with those before it which is most in its way: before a node several triangles are as
+    /// near.
     fn finish(mut self) -> Faced {
         let mut seen = std::mem::take(&mut self.seen);
         seen.retain(|facing| !self.is_behind_another(facing));
@@ -310,18 +310,19 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
             && !self.surfaces.is_at_rim(self.now, &only, (self.edge)(only.triangle))
             && self.surfaces.all_turned_away(self.now, self.point.nodes[0], only.normal)
         {
-            return Faced { first: Some(only), ..Faced::NOTHING };
+            return Faced { walls: [Some(only), None, None], ..Faced::NOTHING };
         }
-        let faced: SmallVec<[(Facing, f64); 4]> = seen.into_iter().filter_map(|facing| self.ask(facing)).collect();
-        let Some(first) = self.most_in_way(faced.iter().copied()) else { return Faced::NOTHING };
-        let is_wall = |(other, _): &(Facing, f64)| {
-            let edge = self.of_both(first.triangle, other.triangle);
-            self.surfaces.is_corner(self.now.places, self.point, [&first, other], edge)
-        };
-        let walls: SmallVec<[(Facing, f64); 4]> = faced.into_iter().filter(is_wall).collect();
-        let second = self.most_in_way(walls.iter().copied());
-        let is_third = |second: Facing| walls.iter().any(|(other, _)| other.normal.dot(second.normal) < CORNER);
-        Faced { first: Some(first), second, is_tip: second.is_some_and(is_third), ..Faced::NOTHING }
+        let mut left: SmallVec<[(Facing, f64); 4]> = seen.into_iter().filter_map(|facing| self.ask(facing)).collect();
+        let mut faced = Faced::NOTHING;
+        for wall in &mut faced.walls {
+            *wall = self.most_in_way(left.iter().copied());
+            let Some(wall) = wall else { break };
+            left.retain(|(other, _)| {
+                let edge = self.of_both(wall.triangle, other.triangle);
+                self.surfaces.is_corner(self.now.places, self.point, [wall, other], edge)
+            });
+        }
+        faced
     }
 
     /// The one of some that is most in its way, each with the cosine between its normal and the point's own.

@@ -20,7 +20,7 @@ pub use boxes::Tree;
 pub use candidates::{Kept, Listed};
 pub use edges::{Crossing, Edge, distance};
 pub use face_points::{bilinear, face_points};
-pub use facing::{Faced, Facing, Own, TURNED_AWAY};
+pub use facing::{Faced, Facing, MOST_WALLS, Own, TURNED_AWAY};
 pub use immersed::immersed;
 pub use law::{Beginning, Contact, ContactSet};
 pub use lists::{Finder, Lists};

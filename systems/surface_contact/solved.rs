@@ -191,7 +191,7 @@ fn note<T: Scalar>(
         let outside = pair.gap(&contacts.surface.places) + pair.allowed;
         let kept = contacts.kept(pair.point);
         let touch = bodies[kept.body].kept_mut(kept);
-        let in_corner = pair.what == What::Second;
+        let in_corner = pair.what == What::Another;
         let outside = if in_corner { outside.min(touch[5].to_f64()) } else { outside };
         set_vector(touch, 0, DVec3::ZERO);
         let numbers = [pair.allowed, PointState { did: Did::Faces, in_corner }.number(), outside];

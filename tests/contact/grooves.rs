@@ -10,27 +10,31 @@ use std::path::Path;
 
 /// A mesh as it is written: nodes with their places, and elements by Gmsh's number of their kind.
 #[derive(Default)]
-struct Written {
+pub(crate) struct Written {
     nodes: String,
     elements: String,
 }
 
 impl Written {
-    fn node(&mut self, [x, y, z]: [f64; 3]) -> usize {
+    pub(crate) fn node(&mut self, [x, y, z]: [f64; 3]) -> usize {
         let number = self.nodes.lines().count() + 1;
         writeln!(self.nodes, "{number} {x} {y} {z}").unwrap();
         number
     }
 
-    /// Of a face of nodes at one end, and the same at the other.
-    fn element(&mut self, faces: [&[usize]; 2]) {
-        let number = self.elements.lines().count() + 1;
-        let kind = if faces[0].len() == 3 { 6 } else { 5 };
-        let corners = faces.concat().iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
+    /// Of a face of nodes at one end, and the same at the other, or one node there.
+    pub(crate) fn element(&mut self, faces: [&[usize]; 2]) {
+        let (number, corners) = (self.elements.lines().count() + 1, faces.concat());
+        let kind = match corners.len() {
+            4 => 4,
+            6 => 6,
+            _ => 5,
+        };
+        let corners = corners.iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
         writeln!(self.elements, "{number} {kind} 2 1 1 {corners}").unwrap();
     }
 
-    fn write(&self, path: &Path) {
+    pub(crate) fn write(&self, path: &Path) {
         let Self { nodes, elements } = self;
         let counts = [nodes.lines().count(), elements.lines().count()];
         let text = format!(

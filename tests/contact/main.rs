@@ -12,6 +12,7 @@ mod capstan;
 mod configurations;
 mod contact_fields;
 mod copies;
+mod corners;
 mod curved_tools;
 mod discs;
 mod edges;
