@@ -208,8 +208,8 @@ fn sight(point: u32, place: vec3<f32>, facing: Facing) -> Sight {
 }
 
 // How far farther outside a point is of something than motion tells that was so far outside before (m).
-fn unexpected(of: Sight, last: f32) -> f32 {
-    return of.now - (last + of.went);
+fn unexpected(seen: Sight, last: f32) -> f32 {
+    return seen.now - (last + seen.went);
 }
 
 // How much deeper (m) a point is than motion tells that was so far outside before (m): twin of `allowed` in
