@@ -38,8 +38,14 @@ fn write_spike(path: &Path) {
 
 const SPRINGS: &str = ", law: Penalty(share: 0.2, damping: 0.3)";
 
-/// How steps are taken, and by what law: the GPU has none that are implicit.
-const CASES: [(&str, &str); 3] = [("", ""), ("", SPRINGS), ("solver: Implicit(step: 2.5e-3),", SPRINGS)];
+/// How steps are taken, and by what law, and how deep a node of the tip may rest in walls (m): the masses of nodes are
+/// shared among what touches there, so that one sweep holds by what is left. The GPU has no implicit steps.
+const CASES: [(&str, &str, f64); 4] = [
+    ("", "", 1e-4),
+    ("", ", sweeps: 20", 1e-6),
+    ("", SPRINGS, 2e-4),
+    ("solver: Implicit(step: 2.5e-3),", SPRINGS, 2e-4),
+];
 
 /// A block whose weight presses it into the corner comes to rest, and each wall bears its part. Of three walls two
 /// counted, and the run ended at the default step: what sank into the third meanwhile came out with more energy.
@@ -49,7 +55,7 @@ fn what_its_weight_presses_into_a_corner_rests() {
     write_corner(&folder.path().join("c.msh"));
     let pull = DVec3::new(-4.0, -6.0, -8.0);
     for run in configurations() {
-        for (solver, law) in CASES {
+        for (solver, law, deepest) in CASES {
             if !solver.is_empty() && run.options.backend != BackendChoice::Cpu {
                 continue;
             }
@@ -75,7 +81,7 @@ fn what_its_weight_presses_into_a_corner_rests() {
             assert!(goes < 1e-7, "{what}: {goes} m in .1 s");
             near(&what, simulation.contact("b").unwrap().force.distance(-weight), 0.0, weight.length(), 1e-3);
             // the node in the tip itself is in all three walls
-            assert!(seen[1][0].min_element() > -1e-5, "{what}: {}", seen[1][0]);
+            assert!(seen[1][0].min_element() > -deepest, "{what}: {}", seen[1][0]);
         }
     }
 }
@@ -87,7 +93,7 @@ fn a_spike_in_a_corner_is_borne_by_its_three_walls() {
     write_corner(&folder.path().join("c.msh"));
     write_spike(&folder.path().join("s.msh"));
     for run in configurations() {
-        for (solver, law) in CASES {
+        for (solver, law, deepest) in CASES {
             if !solver.is_empty() && run.options.backend != BackendChoice::Cpu {
                 continue;
             }
@@ -97,7 +103,7 @@ fn a_spike_in_a_corner_is_borne_by_its_three_walls() {
                     \"s\": (mesh: File(path: \"s.msh\", tets: Tet4), material: \"m\", translate: (1e-5, 1e-5, 1e-5))}},
                 materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 1e5, poisson: 0.3), damping: 100)}},
                 constraints: [Fixed(body: \"c\", on: All),
-                    Prescribed(body: \"s\", on: Plane(normal: (1, 1, 1), at: 0.00901732, within: 1e-5),
+                    Prescribed(body: \"s\", on: Plane(normal: (1, 1, 1), at: 0.00901732, tolerance: 1e-5),
                         displacement: (-2e-4, -2e-4, -2e-4), curve: Smooth(end: 0.2))],
                 contacts: [Between(bodies: (\"c\", \"s\"), friction: 0{law})])"
             );
@@ -108,8 +114,7 @@ fn a_spike_in_a_corner_is_borne_by_its_three_walls() {
             assert!(force.min_element() > 1e-3, "{what}: {force} N");
             near(&what, force.distance(DVec3::splat(force.element_sum() / 3.0)), 0.0, force.length(), 1e-3);
             let tip = simulation.displacements("s").unwrap()[0] + 1e-5;
-            let deepest = if law.is_empty() { -1e-8 } else { -5e-5 };
-            assert!(tip.min_element() > deepest, "{what}: {tip} m");
+            assert!(tip.min_element() > -deepest, "{what}: {tip} m");
         }
     }
 }
