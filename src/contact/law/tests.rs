@@ -145,10 +145,8 @@ fn shares_of_mass_majorise_the_coupling_of_contacts() {
     for _ in 0..300 {
         let (mut set, _) = random_set(&mut random, 0.0, 0.0);
         // some are held along an axis
-        for response in &mut set.responses {
-            if random.u8(0..3) == 0 {
-                response[random.usize(0..3)] = 0.0;
-            }
+        for response in set.responses.iter_mut().filter(|_| random.u8(0..3) == 0) {
+            response[random.usize(0..3)] = 0.0;
         }
         set.share_masses(&one());
         let (acting, responses) = (set.acting.clone(), set.responses.clone());
