@@ -26,10 +26,14 @@ struct Faced {
 }
 
 // Whether a point that is deep in a face is outside of the body, beyond what is thin behind that: in front of another
-// face of the same body that is nearer.
-fn is_behind_another(number: u32, point: vec3<f32>, facing: Facing, places: vec2<u32>) -> bool {
+// face of the same body that is nearer. To what is deep in a wall of a corner, and beside that, nothing of the body is
+// nearer than where walls meet, neither in front of nor behind it.
+fn is_behind_another(number: u32, point: vec3<f32>, facing: Facing, places: vec2<u32>, largest: f32) -> bool {
     let edge = edge_with(facing.triangle);
-    if facing.gap >= -ALIKE * edge {
+    let deep = ALIKE * edge;
+    let distance = length(facing.at);
+    let is_beside = facing.gap < 0.0 && distance > (1.0 + ALIKE) * -facing.gap;
+    if select(facing.gap >= -deep, distance <= deep, is_beside) {
         return false;
     }
     let all = surface.list + surface.items + 1u;
@@ -42,11 +46,15 @@ fn is_behind_another(number: u32, point: vec3<f32>, facing: Facing, places: vec2
         }
         let corners = corners_of(triangle, point);
         let found = nearest(corners);
-        if length(found.at) >= -facing.gap {
+        let away = length(found.at);
+        let reach = reach_of(meeting_with(triangle), largest);
+        let depth = bitcast<f32>(surface_faces[8u * triangle + 7u]);
+        if away >= select(-facing.gap, distance - deep, is_beside) || away > max(reach, depth) {
             continue;
         }
         let other = outside(triangle, point, corners, found, edge);
-        if other.there && other.gap > ALIKE * edge {
+        let is_seen = is_beside && other.gap >= -depth && other.gap <= reach;
+        if other.there && (is_seen || other.gap > select(deep, 0.0, is_beside)) {
             return true;
         }
     }
@@ -99,7 +107,7 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
             if !facing.there || !(facing.gap >= -depth && facing.gap <= reach) {
                 continue;
             }
-            if is_behind_another(number, point, facing, vec2<u32>(begin, end)) {
+            if is_behind_another(number, point, facing, vec2<u32>(begin, end), largest) {
                 continue;
             }
             if !own_known {

@@ -144,8 +144,11 @@ impl<'a, 'k> Candidates<'a, 'k> {
         match off.dot(self.surfaces.normal_of_part(self.now, triangle, part)) {
             out if out >= 0.0 => facing(part, off / distance, distance),
             // of a corner that it has sunk into each wall bears it, as above it: the way to where both meet would swing
-            // as far as it goes aside; in the wall's plane, so that forces act along one line
-            _ if self.surfaces.rises_beside(self.now, (triangle, part), (at, normal), edge) => {
+            // as far as it goes aside; in the wall's plane, so that forces act along one line. What is farther from
+            // there than insides go is beyond the body, however near it is to the plane
+            _ if distance <= self.surfaces.depths[triangle as usize]
+                && self.surfaces.rises_beside(self.now, (triangle, part), (at, normal), edge) =>
+            {
                 let gap = off.dot(normal);
                 let corners = self.surfaces.corners(self.now.places, triangle);
                 let weights = OnTriangle::weights_in_plane(self.at - gap * normal, corners);

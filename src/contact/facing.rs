@@ -139,10 +139,12 @@ impl Surfaces {
         (faced, kept): (&mut Faced, &mut Kept),
     ) {
         let Kept { nearest, around } = kept;
-        let mut candidates = Candidates::new((self, now), point.place(now.places), listed, nearest);
+        let at = point.place(now.places);
+        let mut candidates = Candidates::new((self, now), at, listed, nearest);
         let (triangles, reach, edge) = (listed.triangles, &reach, &edge);
         let (own, seen, before) = (None, SmallVec::new(), SmallVec::new());
-        let mut way = Way { surfaces: self, now, point, triangles, reach, edge, own, seen, before };
+        let at = point.place(now.places);
+        let mut way = Way { surfaces: self, now, point, at, triangles, reach, edge, own, seen, before };
         let mut wakes = f64::INFINITY;
         let mut look = |candidates: &Candidates<'_, '_>, number: usize, triangle: u32| {
             let &(found, distance) = candidates.nearest(number);
@@ -284,6 +286,8 @@ struct Way<'a, R, E> {
     surfaces: &'a Surfaces,
     now: Placed<'a>,
     point: &'a Point,
+    /// Where it is (m).
+    at: DVec3,
     /// The triangles that may be near it.
     triangles: &'a [u32],
     /// How far off triangles are looked at (m).
@@ -303,8 +307,9 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
     /// of all walls of a corner with those before it which is most in its way: before a node several triangles are as
     /// near.
     fn finish(mut self) -> Faced {
-        let mut seen = std::mem::take(&mut self.seen);
-        seen.retain(|facing| !self.is_behind_another(facing));
+        let seen = std::mem::take(&mut self.seen);
+        let is_there = |facing: &&Facing| !self.is_behind_another(facing, &seen);
+        let seen: SmallVec<[Facing; 4]> = seen.iter().filter(is_there).copied().collect();
         if let [only] = seen[..]
             && self.point.triangle.is_none()
             && !self.surfaces.is_at_rim(self.now, &only, (self.edge)(only.triangle))
@@ -347,12 +352,18 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
     }
 
     /// Whether a point that is deep in a face is outside of the body, beyond what is thin behind that: in front of
-    /// another face of the same body that is nearer.
-    fn is_behind_another(&self, facing: &Facing) -> bool {
+    /// another face of the same body that is nearer. To what is deep in a wall of a corner, and beside that, nothing of
+    /// the body is nearer than where walls meet, neither in front of nor behind it.
+    fn is_behind_another(&self, facing: &Facing, seen: &[Facing]) -> bool {
         let (deep, bodies) = (ALIKE * (self.edge)(facing.triangle), &self.surfaces.bodies);
-        let is_nearer = |&(other, gap): &(u32, f64)| {
-            bodies[other as usize] == bodies[facing.triangle as usize] && gap > deep && gap < -facing.gap
-        };
+        let is_of_body = |other: u32| bodies[other as usize] == bodies[facing.triangle as usize];
+        let distance = self.at.distance(facing.at);
+        if facing.gap < 0.0 && distance > (1.0 + ALIKE) * -facing.gap {
+            let is_nearer = |other: u32, away: f64| is_of_body(other) && away + deep < distance;
+            return self.before.iter().any(|&(other, gap)| is_nearer(other, gap))
+                || seen.iter().any(|other| is_nearer(other.triangle, self.at.distance(other.at)));
+        }
+        let is_nearer = |&(other, gap): &(u32, f64)| is_of_body(other) && gap > deep && gap < -facing.gap;
         facing.gap < -deep && self.before.iter().any(is_nearer)
     }
 

@@ -46,6 +46,7 @@ mod lifted_tools;
 mod loads_that_grow;
 mod lost_surfaces;
 mod memory;
+mod notches;
 mod quiet_books;
 mod rest;
 mod rims;
