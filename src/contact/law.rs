@@ -6,7 +6,7 @@ mod tasks;
 
 use super::parts::Parts;
 use crate::backend::cpu::Cpu;
-use acting::Acting;
+pub use acting::Acting;
 use glam::{DVec3, DVec4};
 use of_nodes::OfNodes;
 use tasks::{Begin, Correct, Correction, Forces, Note, Push};

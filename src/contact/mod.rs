@@ -22,7 +22,7 @@ pub use edges::{Crossing, Edge, distance};
 pub use face_points::{bilinear, face_points};
 pub use facing::{Faced, Facing, MOST_WALLS, Own, TURNED_AWAY};
 pub use immersed::immersed;
-pub use law::{Beginning, Contact, ContactSet};
+pub use law::{Acting, Beginning, Contact, ContactSet};
 pub use lists::{Finder, Lists};
 pub use neighbourhoods::Neighbourhoods;
 pub use parts::Parts;

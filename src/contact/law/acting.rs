@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3Swizzles};
 
 /// Σ |w| n nᵀ over the contacts of a node, w its weights there and n their normals.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Acting {
+pub struct Acting {
     /// xx, yy, zz.
     squares: DVec3,
     /// xy, yz, zx.
