@@ -1,6 +1,7 @@
 // Which triangle a point faces; twin of src/contact/facing.rs. Places are counted from the point.
 const TURNED_AWAY: f32 = 0.2;
 const ALIKE: f32 = 0.05;
+const ON_IT: f32 = 1e-3;
 const CORNER: f32 = 0.866;
 const RIM: f32 = 0.5;
 const FLUSH: f32 = -0.99;
@@ -167,7 +168,7 @@ fn outside(triangle: u32, point: vec3<f32>, corners: array<vec3<f32>, 3>, found:
     facing.gap = -dot(found.at, normal);
     facing.part = 0u;
     facing.there = true;
-    if found.part == 0u || distance <= 1e-3 * edge {
+    if found.part == 0u || distance <= ON_IT * edge {
         return facing;
     }
     facing.part = found.part;
