@@ -50,7 +50,7 @@ fn at_rim(number: u32, point: vec3<f32>, own: vec3<f32>, facing: Facing, reach: 
     var best = FAR;
     var least = -FAR;
     var flank = facing.triangle;
-    let on_it = 1e-3 * edge;
+    let on_it = ON_IT * edge;
     // two of the flanks that see the point, if there are so many
     var seen_by = vec2<u32>(select(NONE, facing.triangle, outside > on_it), NONE);
     for (var corner = 0u; corner < 3u; corner++) {

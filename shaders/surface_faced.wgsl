@@ -30,13 +30,13 @@ struct Faced {
 }
 
 // Whether a point that is deep in a face is outside of the body, beyond what is thin behind that: in front of another
-// face of the same body that is nearer. To what is deep in a wall of a corner, and beside that, nothing of the body is
-// nearer than where walls meet, neither in front of nor behind it.
+// face of the same body that is nearer. To what is beside a wall of a corner nothing of the body is nearer than where
+// walls meet, neither in front of nor behind it.
 fn is_behind_another(number: u32, point: vec3<f32>, facing: Facing, places: vec2<u32>, largest: f32) -> bool {
     let edge = edge_with(facing.triangle);
     let deep = ALIKE * edge;
     let distance = length(facing.at);
-    let is_beside = facing.gap < 0.0 && distance > (1.0 + ALIKE) * -facing.gap;
+    let is_beside = facing.part == 0u && distance > (1.0 + ALIKE) * abs(facing.gap);
     if select(facing.gap >= -deep, distance <= deep, is_beside) {
         return false;
     }

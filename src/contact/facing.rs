@@ -354,13 +354,13 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
     }
 
     /// Whether a point that is deep in a face is outside of the body, beyond what is thin behind that: in front of
-    /// another face of the same body that is nearer. To what is deep in a wall of a corner, and beside that, nothing of
-    /// the body is nearer than where walls meet, neither in front of nor behind it.
+    /// another face of the same body that is nearer. To what is beside a wall of a corner nothing of the body is nearer
+    /// than where walls meet, neither in front of nor behind it.
     fn is_behind_another(&self, facing: &Facing, seen: &[Facing]) -> bool {
         let (deep, bodies) = (ALIKE * (self.edge)(facing.triangle), &self.surfaces.bodies);
         let is_of_body = |other: u32| bodies[other as usize] == bodies[facing.triangle as usize];
         let distance = self.at.distance(facing.at);
-        if facing.gap < 0.0 && distance > (1.0 + ALIKE) * -facing.gap {
+        if facing.part == 0 && distance > (1.0 + ALIKE) * facing.gap.abs() {
             let is_nearer = |other: u32, away: f64| is_of_body(other) && away + deep < distance;
             return self.before.iter().any(|&(other, gap)| is_nearer(other, gap))
                 || seen.iter().any(|other| is_nearer(other.triangle, self.at.distance(other.at)));
