@@ -73,8 +73,23 @@ fn is_near_side(facing: Facing, corners: array<vec3<f32>, 3>, near: f32) -> bool
         || facing.weights.z * twice < near * length(corners[1] - corners[0]);
 }
 
+// The place nearest to a point of walls that it is behind, along the way to there, and as deep as it is in one of them
+// at most.
+fn where_they_meet(seen: Faced, point: vec3<f32>) -> Faced {
+    var meets = seen;
+    let found = nearest(corners_of(seen.walls[0].triangle, point));
+    let distance = length(found.at);
+    meets.walls[0].weights = found.weights;
+    meets.walls[0].at = found.at;
+    meets.walls[0].normal = found.at / max(distance, 1e-37);
+    meets.walls[0].gap = min(seen.walls[0].gap, min(seen.walls[1].gap, seen.walls[2].gap));
+    meets.count = select(0u, 1u, distance > 0.0);
+    return meets;
+}
+
 // The face that is most in a point's way, and of those that are walls of a corner with all before the one that it is
-// deepest in, or of several, as behind a node of the line in which walls meet, the one that is most in its way.
+// deepest in, or of several, as behind a node of the line in which walls meet, the one that is most in its way. Behind
+// more walls than it may face it is borne by where they meet.
 fn faced(number: u32, point: vec3<f32>) -> Faced {
     let hold = lists_hold();
     let starts = surface.list + number;
@@ -88,7 +103,9 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
     seen.count = 0u;
     // faces that may be walls beside that which is most in its way
     var others = 1u;
-    while seen.count < MOST_WALLS && others > 0u {
+    var is_behind_all = true;
+    // once more, whether there is another wall
+    for (var turn = 0u; turn <= MOST_WALLS && others > 0u; turn++) {
         var most: Facing;
         most.there = false;
         others = 0u;
@@ -138,9 +155,15 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
                 most = facing;
             }
         }
-        if most.there {
-            seen.walls[seen.count] = most;
-            seen.count++;
+        if !most.there {
+            break;
+        }
+        is_behind_all = is_behind_all && most.gap < 0.0;
+        if turn < MOST_WALLS {
+            seen.walls[turn] = most;
+            seen.count = turn + 1u;
+        } else if is_behind_all {
+            return where_they_meet(seen, point);
         }
     }
     var ends: Faced;

@@ -55,7 +55,7 @@ impl Own {
     }
 }
 
-/// How many walls of a corner a point may face: three bear whatever presses it in, if it is deepest in those.
+/// How many walls of a corner a point may face.
 pub const MOST_WALLS: usize = 3;
 
 /// What a point faces.
@@ -305,7 +305,8 @@ struct Way<'a, R, E> {
 impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
     /// What is in its way: where only one is seen, that it is turned away is all that is asked. Each further one is that
     /// of all walls of a corner with those before it which it is deepest in, and of those that it is as deep in, as
-    /// before a node of theirs, the one that is most in its way.
+    /// before a node of theirs, the one that is most in its way. Behind more walls than it may face it is borne by
+    /// where they meet: of some of them others would count from step to step.
     fn finish(mut self) -> Faced {
         let seen = std::mem::take(&mut self.seen);
         let is_there = |facing: &&Facing| !self.is_behind_another(facing, &seen);
@@ -329,7 +330,22 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
                 self.surfaces.is_corner(self.now.places, self.point, [wall, other], edge)
             });
         }
+        let is_behind = |wall: &Facing| wall.gap < 0.0;
+        if faced.walls.iter().flatten().all(is_behind) && left.iter().any(|(wall, _)| is_behind(wall)) {
+            faced.walls = [self.where_they_meet(&faced), None, None];
+        }
         faced
+    }
+
+    /// The place nearest to it of walls that it is behind, along the way to there, and as deep as it is in one of them
+    /// at most: so that is not another depth where it comes before one of them.
+    fn where_they_meet(&self, faced: &Faced) -> Option<Facing> {
+        let Self { surfaces, now, at, .. } = *self;
+        let (first, deepest) = (faced.walls[0]?, faced.walls.iter().flatten().map(|wall| wall.gap).reduce(f64::min)?);
+        let OnTriangle { at: nearest, weights, .. } =
+            OnTriangle::nearest(at, surfaces.corners(now.places, first.triangle));
+        let normal = (nearest - at).try_normalize()?;
+        Some(Facing { weights, at: nearest, normal, gap: deepest, ..first })
     }
 
     /// The one of two that is more in its way, each with the cosine between its normal and the point's own; `by_depth`
