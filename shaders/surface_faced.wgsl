@@ -53,7 +53,8 @@ fn is_behind_another(number: u32, point: vec3<f32>, facing: Facing, places: vec2
         let away = length(found.at);
         let reach = reach_of(meeting_with(triangle), largest);
         let depth = bitcast<f32>(surface_faces[8u * triangle + 7u]);
-        if away >= select(-facing.gap, distance - deep, is_beside) || away > max(reach, depth) {
+        // an edge where more than two faces meet is as near to all of them
+        if away >= select((1.0 + ON_IT) * -facing.gap, distance - deep, is_beside) || away > max(reach, depth) {
             continue;
         }
         let other = outside(triangle, point, corners, found, edge);

@@ -303,9 +303,9 @@ struct Way<'a, R, E> {
 }
 
 impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
-    /// What is in its way: where only one is seen, that it is turned away is all that is asked. Each further one is that
-    /// of all walls of a corner with those before it which it is deepest in, and of those that it is as deep in, as
-    /// before a node of theirs, the one that is most in its way. Behind more walls than it may face it is borne by
+    /// What is in its way: where only one is seen, that it is turned away is all that is asked. Each further one is
+    /// that of all walls of a corner with those before it which it is deepest in, and of those that it is as deep in,
+    /// as before a node of theirs, the one that is most in its way. Behind more walls than it may face it is borne by
     /// where they meet: of some of them others would count from step to step.
     fn finish(mut self) -> Faced {
         let seen = std::mem::take(&mut self.seen);
@@ -381,7 +381,9 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
             return self.before.iter().any(|&(other, gap)| is_nearer(other, gap))
                 || seen.iter().any(|other| is_nearer(other.triangle, self.at.distance(other.at)));
         }
-        let is_nearer = |&(other, gap): &(u32, f64)| is_of_body(other) && gap > deep && gap < -facing.gap;
+        // an edge where more than two faces meet is as near to all of them
+        let nearer = (1.0 + ON_IT) * -facing.gap;
+        let is_nearer = |&(other, gap): &(u32, f64)| is_of_body(other) && gap > deep && gap < nearer;
         facing.gap < -deep && self.before.iter().any(is_nearer)
     }
 
