@@ -166,7 +166,7 @@ fn what_is_thrown_into_a_free_groove_keeps_momentum_and_its_moment() {
             force = force.max(simulation.contact("b").unwrap().force.length());
         }
         let [end, end_moment] = moments(&mut simulation);
-        assert!(force > 0.01, "{}: {force} N", run.name);
+        assert!(force > 0.001, "{}: it does not hit: {force} N", run.name);
         near(run.name, end.distance(momentum), 0.0, size, run.bound(1e-10, 1e-5));
         near(run.name, end_moment.distance(moment), 0.0, size * 0.05, run.bound(1e-6, 1e-4));
     }
