@@ -13,13 +13,9 @@ fn in_way(facing: Facing, edge: f32) -> f32 {
     return max(facing.gap, 0.0) + inside * (1.0 + TURNED_AWAY + facing.turned);
 }
 
-// Whether a face is more in a point's way than another; by depth, whether it is deeper in that, if it is so clearly.
-fn is_more_in_way(facing: Facing, other: Facing, by_depth: bool) -> bool {
+// Whether a face is more in a point's way than another.
+fn is_more_in_way(facing: Facing, other: Facing) -> bool {
     let edge = min(edge_with(facing.triangle), edge_with(other.triangle));
-    let farther = facing.gap - other.gap;
-    if by_depth && abs(farther) > ON_IT * edge {
-        return farther < 0.0;
-    }
     return in_way(facing, edge) < in_way(other, edge);
 }
 
@@ -88,9 +84,9 @@ fn where_they_meet(seen: Faced, point: vec3<f32>) -> Faced {
     return meets;
 }
 
-// The face that is most in a point's way, and of those that are walls of a corner with all before the one that it is
-// deepest in, or of several, as behind a node of the line in which walls meet, the one that is most in its way. Behind
-// more walls than it may face it is borne by where they meet.
+// The face that is most in a point's way, and of those that are walls of a corner with all before the one that is:
+// several triangles of each wall are as near to what is behind a node of the line in which walls meet. Behind more walls
+// than it may face it is borne by where they meet.
 fn faced(number: u32, point: vec3<f32>) -> Faced {
     let hold = lists_hold();
     let starts = surface.list + number;
@@ -152,7 +148,7 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
                 continue;
             }
             others += u32(most.there);
-            if !most.there || is_more_in_way(facing, most, seen.count > 0u) {
+            if !most.there || is_more_in_way(facing, most) {
                 most = facing;
             }
         }

@@ -304,9 +304,9 @@ struct Way<'a, R, E> {
 
 impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
     /// What is in its way: where only one is seen, that it is turned away is all that is asked. Each further one is
-    /// that of all walls of a corner with those before it which it is deepest in, and of those that it is as deep in,
-    /// as before a node of theirs, the one that is most in its way. Behind more walls than it may face it is borne by
-    /// where they meet: of some of them others would count from step to step.
+    /// that of all walls of a corner with those before it which is most in its way: before a node several triangles are
+    /// as near. Behind more walls than it may face it is borne by where they meet: of some of them others would count
+    /// from step to step.
     fn finish(mut self) -> Faced {
         let seen = std::mem::take(&mut self.seen);
         let is_there = |facing: &&Facing| !self.is_behind_another(facing, &seen);
@@ -321,10 +321,8 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
         let mut left: SmallVec<[(Facing, f64); 4]> = seen.into_iter().filter_map(|facing| self.ask(facing)).collect();
         let mut faced = Faced::NOTHING;
         for place in 0..MOST_WALLS {
-            let Some(wall) = left.iter().copied().reduce(|most, other| self.more(most, other, place > 0)) else {
-                break;
-            };
-            let wall = faced.walls[place].insert(wall.0);
+            let Some((wall, _)) = left.iter().copied().reduce(|most, other| self.more(most, other)) else { break };
+            let wall = faced.walls[place].insert(wall);
             left.retain(|(other, _)| {
                 let edge = self.of_both(wall.triangle, other.triangle);
                 self.surfaces.is_corner(self.now.places, self.point, [wall, other], edge)
@@ -348,14 +346,11 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
         Some(Facing { weights, at: nearest, normal, gap: deepest, ..first })
     }
 
-    /// The one of two that is more in its way, each with the cosine between its normal and the point's own; `by_depth`
-    /// the one that it is deeper in, if it is so clearly.
-    fn more(&self, most: (Facing, f64), other: (Facing, f64), by_depth: bool) -> (Facing, f64) {
+    /// The one of two that is more in its way, each with the cosine between its normal and the point's own.
+    fn more(&self, most: (Facing, f64), other: (Facing, f64)) -> (Facing, f64) {
         let edge = self.of_both(most.0.triangle, other.0.triangle);
-        let farther = other.0.gap - most.0.gap;
         let [of_most, of_other] = [most, other].map(|(facing, turned)| in_way(&facing, turned, edge));
-        let is_more = if by_depth && farther.abs() > ON_IT * edge { farther < 0.0 } else { of_other < of_most };
-        if is_more { other } else { most }
+        if of_other < of_most { other } else { most }
     }
 
     /// What the point faces of something that it sees, with the cosine between its normal and the point's own, if it
