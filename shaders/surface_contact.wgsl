@@ -194,49 +194,49 @@ fn begin_if_met(contact: u32, meets: u32, parts: Parts, of_point: Begun, state: 
     begin(contact, meets, parts, begun);
 }
 
-// How a point is to something that it faces.
-struct Sight {
-    parts: Parts,
-    now: f32, // how far outside it is (m)
-    went: f32, // how far outwards it went in the last step (m)
+// How a point is to something that it faces: how far outside now, and how far outwards it went in the last step (m).
+struct Outside {
+    now: f32,
+    went: f32,
 }
 
-fn sight(point: u32, place: vec3<f32>, facing: Facing) -> Sight {
+fn sight(point: u32, place: vec3<f32>, facing: Facing) -> Outside {
     let parts = parts_of(point, facing, place);
     let outside = gap_of(facing, parts, place) - meeting_number(meeting_with(facing.triangle), 3u);
-    return Sight(parts, outside, dot(facing.normal, goes(parts, LAST)));
+    return Outside(outside, dot(facing.normal, goes(parts, LAST)));
 }
 
-// How far farther outside a point is of something than motion tells that was so far outside before (m).
-fn unexpected(seen: Sight, last: f32) -> f32 {
-    return seen.now - (last + seen.went);
-}
-
-// How much deeper (m) a point is than motion tells that was so far outside before (m): twin of `allowed` in
-// systems/surface_contact/gather.rs.
+// How much deeper (m) a point is than motion tells that was so far outside (m), of one face that it sees, or of two:
+// twin of `allowed` in systems/surface_contact/gather.rs.
 fn deeper_than_expected(
-    did: f32, was_in_corner: bool, last: f32, lowest: f32, sights: ptr<function, array<Sight, MOST_WALLS>>, count: u32
-) -> f32 {
+    did: f32, was_in_corner: bool, last: f32, first: Outside, second: Outside, sees_two: bool) -> f32 {
+    let lowest = min(first.now, select(first.now, second.now, sees_two));
     if did == FREE {
         return lowest;
     }
     if was_in_corner || did == FACES {
         return lowest - (last - 2.0 * largest_step());
     }
-    var old = 0u;
-    for (var wall = 1u; wall < count; wall++) {
-        if abs(unexpected((*sights)[wall], last)) < abs(unexpected((*sights)[old], last)) {
-            old = wall;
-        }
+    let of_first = first.now - (last + first.went);
+    let of_second = second.now - (last + second.went);
+    if !sees_two {
+        return of_first;
     }
-    var deeper = unexpected((*sights)[old], last);
-    let before = min((*sights)[old].now - (*sights)[old].went, 0.0);
-    for (var wall = 0u; wall < count; wall++) {
-        if wall != old {
-            deeper = min(deeper, (*sights)[wall].now - (*sights)[wall].went - before);
-        }
+    let of_new = (second.now - second.went) - (first.now - first.went);
+    if abs(of_first) <= abs(of_second) {
+        return min(of_first, of_new + max(first.now - first.went, 0.0));
     }
-    return deeper;
+    return min(of_second, max(second.now - second.went, 0.0) - of_new);
+}
+
+// The contact of a point with something that it faces, if it meets that.
+fn meet(contact: u32, point: u32, place: vec3<f32>, facing: Facing, outside: Outside, allowed: f32, slip: vec3<f32>,
+    did: f32) {
+    let meets = meeting_with(facing.triangle);
+    let edge = meeting_number(meets, EDGE);
+    let gap = max(outside.now - allowed, -OUT * edge);
+    let begun = Begun(facing.normal, gap, outside.now, allowed, SHARES * edge, 0.0, slip);
+    begin_if_met(contact, meets, parts_of(point, facing, place), begun, did);
 }
 
 @compute @workgroup_size(64)
@@ -247,39 +247,43 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     }
     let point = surface.first + i;
     let place = place_of_point(point);
-    let seen = faced(point, place);
+    let both = faced(point, place);
     let at = touch_of(point);
     let slip = vec3<f32>(surface_touch[at], surface_touch[at + 1u], surface_touch[at + 2u]);
+    let before = surface_touch[at + 3u];
     let was_in_corner = surface_touch[at + 4u] >= IN_CORNER;
     let did = surface_touch[at + 4u] - select(0.0, IN_CORNER, was_in_corner);
+    begin_none(2u * point);
+    begin_none(2u * point + 1u);
+    let in_corner = both.first.there && both.second.there && !both.is_tip;
     var allowed = 0.0;
     var lowest = 0.0;
-    var sights: array<Sight, MOST_WALLS>;
-    for (var wall = 0u; wall < seen.count; wall++) {
-        sights[wall] = sight(point, place, seen.walls[wall]);
-        lowest = select(min(lowest, sights[wall].now), sights[wall].now, wall == 0u);
-    }
-    if seen.count > 0u {
-        let deeper = deeper_than_expected(did, was_in_corner, surface_touch[at + 5u], lowest, &sights, seen.count);
-        let settling = settling_of_step(meeting_with(seen.walls[0].triangle));
-        allowed = max(min(surface_touch[at + 3u] + min(deeper, 0.0) + settling, 0.0), min(lowest, 0.0));
-    }
-    for (var wall = 0u; wall < MOST_WALLS; wall++) {
-        let contact = MOST_WALLS * point + wall;
-        begin_none(contact);
-        if wall < seen.count {
-            let outside = sights[wall].now;
-            let meets = meeting_with(seen.walls[wall].triangle);
-            let edge = meeting_number(meets, EDGE);
-            let gap = max(outside - allowed, -OUT * edge);
-            let begun = Begun(seen.walls[wall].normal, gap, outside, allowed, SHARES * edge, 0.0, slip);
-            begin_if_met(contact, meets, sights[wall].parts, begun, did);
+    if both.first.there {
+        let first = sight(point, place, both.first);
+        lowest = first.now;
+        var second = first;
+        if both.second.there {
+            second = sight(point, place, both.second);
+        }
+        if in_corner {
+            lowest = min(lowest, second.now);
+        }
+        let settling = settling_of_step(meeting_with(both.first.triangle));
+        let last = surface_touch[at + 5u];
+        let deeper = deeper_than_expected(did, was_in_corner, last, first, second, in_corner);
+        allowed = max(min(before + min(deeper, 0.0) + settling, 0.0), min(lowest, 0.0));
+        meet(2u * point, point, place, both.first, first, allowed, slip, did);
+        if both.second.there {
+            // of a tip's it is not known how the point got there; springs press it out all the same
+            let springs = meeting_number(meeting_with(both.second.triangle), 4u) > 0.0;
+            let let_in = select(min(second.now + settling, 0.0), 0.0, springs);
+            meet(2u * point + 1u, point, place, both.second, second, select(let_in, allowed, in_corner), slip, did);
         }
     }
     for (var k = 0u; k < 3u; k++) {
         surface_touch[at + k] = 0.0;
     }
     surface_touch[at + 3u] = allowed;
-    surface_touch[at + 4u] = select(FREE, FACES, seen.count > 0u) + select(0.0, IN_CORNER, seen.count > 1u);
+    surface_touch[at + 4u] = select(FREE, FACES, both.first.there) + select(0.0, IN_CORNER, in_corner);
     surface_touch[at + 5u] = lowest;
 }

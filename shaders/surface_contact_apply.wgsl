@@ -2,9 +2,7 @@
 @group(0) @binding(0) var<storage, read_write> surface_nodes: array<f32>;
 
 // Of the sum over contacts of a node: the force on it (N).
-alias Sum = vec3<f32>;
-
-fn collect(contact: u32, weight: f32) -> Sum {
+fn collect(contact: u32, weight: f32) -> vec3<f32> {
     return weight * vector(contact, CHANGE);
 }
 

@@ -2,21 +2,6 @@
 // surface_contact_share.wgsl; surface_contact_apply.wgsl gives them to nodes.
 @group(0) @binding(0) var<storage, read> surface_shares: array<f32>;
 
-// The sum of the weights of all contacts of a node.
-fn all_on(node: u32) -> f32 {
-    let at = SHARE_NUMBERS * node;
-    return surface_shares[at] + surface_shares[at + 1u] + surface_shares[at + 2u];
-}
-
-// What all contacts of a node come to along a vector, at most.
-fn acts_on(node: u32, along: vec3<f32>) -> f32 {
-    let at = SHARE_NUMBERS * node;
-    let squares = vec3<f32>(surface_shares[at], surface_shares[at + 1u], surface_shares[at + 2u]);
-    let products = vec3<f32>(surface_shares[at + 3u], surface_shares[at + 4u], surface_shares[at + 5u]);
-    // rounding may leave a little less than nothing
-    return sqrt(abs(all_on(node) * (dot(squares, along * along) + 2.0 * dot(products, along * along.yzx))));
-}
-
 @compute @workgroup_size(64)
 fn surface_contact_impulse(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let contact = row(id, groups);
@@ -32,12 +17,10 @@ fn surface_contact_impulse(@builtin(global_invocation_id) id: vec3<u32>, @builti
             continue;
         }
         let node = part_node(contact, part);
+        let share = abs(weight) * surface_shares[node];
         let response = at_node(node, RESPONSE);
-        let largest = max(response.x, max(response.y, response.z));
-        if largest > 0.0 {
-            yields += abs(weight) * largest * acts_on(node, response / largest * normal);
-            along += abs(weight) * largest * all_on(node);
-        }
+        yields += share * dot(normal, response * normal);
+        along += share * max(response.x, max(response.y, response.z));
     }
     let before = number(contact, PRESSING);
     let springs = surface_contacts[CONTACT_WORDS * contact + ACTIVE] == BY_SPRING;

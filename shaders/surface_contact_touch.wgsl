@@ -2,7 +2,7 @@
 // note_edges is in surface_touch_edges.wgsl, or generated.
 @group(0) @binding(0) var<storage, read_write> surface_touch: array<f32>;
 
-// Of several walls slip is kept of the first that a point touches, for along all it has slipped alike.
+// Of two walls slip is kept of the first that a point touches, for along both it has slipped alike.
 fn note(contact: u32, at: u32, of_point: bool) {
     let pressing = number(contact, PRESSING);
     if !is_active(contact) || !(pressing > 0.0) {
@@ -36,8 +36,7 @@ fn surface_contact_touch(@builtin(global_invocation_id) id: vec3<u32>, @builtin(
     }
     let point = surface.first + i;
     let at = touch_of(point);
-    for (var wall = 0u; wall < MOST_WALLS; wall++) {
-        note(MOST_WALLS * point + wall, at, true);
-    }
+    note(2u * point, at, true);
+    note(2u * point + 1u, at, true);
     note_edges(point, at);
 }

@@ -19,7 +19,6 @@ const BY_STEP: u32 = 1u; // what a contact acts by: the step that is predicted, 
 const BY_SPRING: u32 = 2u;
 
 const NODE_NUMBERS: u32 = 15u; // of a node: place, next step, last step, response, last step for work
-const SHARE_NUMBERS: u32 = 6u; // of a node, in surface_shares
 const NEXT: u32 = 3u;
 const LAST: u32 = 6u;
 const RESPONSE: u32 = 9u;

@@ -1,9 +1,9 @@
 // Goes through the contacts that act on a node, in the order in which the CPU adds them up: by points ascending, then
-// by edges. collect and Sum are of who asks.
+// by edges. collect is of who asks.
 
 // The sum over contacts of a node.
-fn collect_all(node: u32) -> Sum {
-    var sum = Sum();
+fn collect_all(node: u32) -> vec3<f32> {
+    var sum = vec3<f32>(0.0);
     let hold = lists_hold();
     let starts = surface.inverse + node;
     let begin = select(0u, surface_lists[starts], hold);

@@ -19,10 +19,10 @@ fn is_more_in_way(facing: Facing, other: Facing) -> bool {
     return in_way(facing, edge) < in_way(other, edge);
 }
 
-// The face in a point's way, and where that is a wall of a corner, the others.
 struct Faced {
-    walls: array<Facing, MOST_WALLS>,
-    count: u32,
+    first: Facing,
+    second: Facing,
+    is_tip: bool, // whether there is a third wall, which does not count
 }
 
 // Whether a point that is deep in a face is outside of the body, beyond what is thin behind that: in front of another
@@ -70,23 +70,8 @@ fn is_near_side(facing: Facing, corners: array<vec3<f32>, 3>, near: f32) -> bool
         || facing.weights.z * twice < near * length(corners[1] - corners[0]);
 }
 
-// The place nearest to a point of walls that it is behind, along the way to there, and as deep as it is in one of them
-// at most.
-fn where_they_meet(seen: Faced, point: vec3<f32>) -> Faced {
-    var meets = seen;
-    let found = nearest(corners_of(seen.walls[0].triangle, point));
-    let distance = length(found.at);
-    meets.walls[0].weights = found.weights;
-    meets.walls[0].at = found.at;
-    meets.walls[0].normal = found.at / max(distance, 1e-37);
-    meets.walls[0].gap = min(seen.walls[0].gap, min(seen.walls[1].gap, seen.walls[2].gap));
-    meets.count = select(0u, 1u, distance > 0.0);
-    return meets;
-}
-
-// The face that is most in a point's way, and of those that are walls of a corner with all before the one that is:
-// several triangles of each wall are as near to what is behind a node of the line in which walls meet. Behind more walls
-// than it may face it is borne by where they meet.
+// The face that is most in a point's way, and of those that are walls of a corner with it the one that is: several
+// triangles of each wall are as near to what is behind a node of the line in which walls meet.
 fn faced(number: u32, point: vec3<f32>) -> Faced {
     let hold = lists_hold();
     let starts = surface.list + number;
@@ -94,18 +79,15 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
     let begin = select(0u, surface_lists[starts], hold);
     let end = select(surface.triangles, surface_lists[starts + 1u], hold);
     let largest = largest_step();
+    var both: Faced;
+    both.first.there = false;
+    both.second.there = false;
+    both.is_tip = false;
     var own = vec3<f32>(0.0);
     var own_known = false;
-    var seen: Faced;
-    seen.count = 0u;
-    // faces that may be walls beside that which is most in its way
-    var others = 1u;
-    var is_behind_all = true;
-    // once more, whether there is another wall
-    for (var turn = 0u; turn <= MOST_WALLS && others > 0u; turn++) {
-        var most: Facing;
-        most.there = false;
-        others = 0u;
+    var others = 0u;
+    // the walls are looked for once the first is known, of those that face more than one
+    for (var turn = 0u; turn < 2u && (turn == 0u || others > 0u); turn++) {
         for (var place = begin; place < end; place++) {
             var triangle = place;
             if hold {
@@ -140,42 +122,27 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
             if !facing.there || facing.turned >= TURNED_AWAY {
                 continue;
             }
-            var is_wall = true;
-            for (var wall = 0u; wall < seen.count && is_wall; wall++) {
-                is_wall = is_corner(seen.walls[wall], facing, point);
+            if turn == 0u {
+                others += u32(both.first.there);
+                if !both.first.there || is_more_in_way(facing, both.first) {
+                    both.first = facing;
+                }
+            } else if is_corner(both.first, facing, point) {
+                both.is_tip = both.is_tip
+                    || (both.second.there && dot(facing.normal, both.second.normal) < CORNER);
+                if !both.second.there || is_more_in_way(facing, both.second) {
+                    both.second = facing;
+                }
             }
-            if !is_wall {
-                continue;
-            }
-            others += u32(most.there);
-            if !most.there || is_more_in_way(facing, most) {
-                most = facing;
-            }
-        }
-        if !most.there {
-            break;
-        }
-        is_behind_all = is_behind_all && most.gap < 0.0;
-        if turn < MOST_WALLS {
-            seen.walls[turn] = most;
-            seen.count = turn + 1u;
-        } else if is_behind_all {
-            return where_they_meet(seen, point);
         }
     }
-    var ends: Faced;
-    ends.count = 0u;
-    for (var wall = 0u; wall < seen.count; wall++) {
-        let end = at_end(number, point, seen.walls[wall]);
-        // several may end outside of the same
-        var is_another = true;
-        for (var other = 0u; other < ends.count; other++) {
-            is_another = is_another && ends.walls[other].triangle != end.triangle;
-        }
-        if is_another {
-            ends.walls[ends.count] = end;
-            ends.count++;
-        }
+    if both.first.there {
+        both.first = at_end(number, point, both.first);
     }
-    return ends;
+    if both.second.there {
+        both.second = at_end(number, point, both.second);
+        // both may end outside of the same
+        both.second.there = both.second.triangle != both.first.triangle;
+    }
+    return both;
 }

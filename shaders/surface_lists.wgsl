@@ -43,7 +43,6 @@ const FACES_MEET: u32 = 2u;
 const EDGES_MEET: u32 = 4u;
 const FACE_POINT_WORDS: u32 = 9u; // corners of its facet, what each has of it, the triangle that it is on
 const EDGE_WORDS: u32 = 7u; // ends, the triangles beside it, their corners across from it, body
-const MOST_WALLS: u32 = 3u; // of a corner that a point may face
 const EDGE_CONTACTS: u32 = 4u; // that each edge has room for where they do not lie so
 const NONE: u32 = 0xffffffffu;
 
@@ -59,13 +58,13 @@ fn lists_hold() -> bool {
     return 1.0001 * (farthest + nearer) <= bitcast<f32>(surface_lists[0]);
 }
 
-// The first contact of an item and the end of them: one a wall that a point may face; of an edge as many as there are others near it, as
+// The first contact of an item and the end of them: two of a point; of an edge as many as there are others near it, as
 // long as there is room for that.
 fn contacts_of(item: u32, hold: bool) -> vec2<u32> {
     if item < surface.points {
-        return vec2<u32>(MOST_WALLS * item, MOST_WALLS * (item + 1u));
+        return vec2<u32>(2u * item, 2u * item + 2u);
     }
-    let of_edges = MOST_WALLS * surface.points;
+    let of_edges = 2u * surface.points;
     if hold && surface_lists[1] != 0u {
         let before = surface_lists[surface.list + surface.points];
         let of_item = vec2<u32>(surface_lists[surface.list + item], surface_lists[surface.list + item + 1u]);

@@ -11,7 +11,7 @@ columns! {
     ContactForce(Reals) = "contact_force", State of Touch, Nodes(3);
     /// What each node carries on as a point of a surface, [`MEETING_NUMBERS`] a node: how far it has slipped
     /// elastically (m, a vector); how deep it may be inside (m, 0 or negative); a [`PointState`] of the last step; how
-    /// far it was outside of what it faced before the step, after it in implicit steps, of several the least (m); since the
+    /// far it was outside of what it faced before the step, after it in implicit steps, of two the less (m); since the
     /// start the length it has slid (m), and what contact has taken of the node's energy (J), also where it is the
     /// faces around it that are touched. Exists with [`ContactForce`].
     SurfaceTouch(Reals) = "surface_touch", State of Touch, Nodes(MEETING_NUMBERS);
@@ -35,17 +35,17 @@ pub enum Did {
     Slides,
 }
 
-/// What a point did in a step, and whether it faced several walls of a corner: a number in [`SurfaceTouch`].
+/// What a point did in a step, and whether it faced two walls of a corner: a number in [`SurfaceTouch`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PointState {
     /// What it did.
     pub did: Did,
-    /// Whether there was more than one wall.
+    /// Whether there were two walls.
     pub in_corner: bool,
 }
 
 impl PointState {
-    /// So much is added where there was more than one wall.
+    /// So much is added where there were two walls.
     pub const IN_CORNER: u32 = 4;
 
     /// What a number tells.

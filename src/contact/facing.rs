@@ -55,26 +55,27 @@ impl Own {
     }
 }
 
-/// How many walls of a corner a point may face.
-pub const MOST_WALLS: usize = 3;
-
-/// What a point faces.
+/// What a point faces: the face in its way, and where that is a wall of a corner, the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Faced {
-    /// The face in its way, and where that is a wall of a corner, the others; nothing behind the last.
-    pub walls: [Option<Facing>; MOST_WALLS],
+    /// The face in its way.
+    pub first: Option<Facing>,
+    /// Another one.
+    pub second: Option<Facing>,
+    /// Whether there is a third, which does not count.
+    pub is_tip: bool,
     /// So much nearer than when the list was made (m) something must come before there is anything to see.
     pub wakes: f64,
 }
 
 impl Faced {
     /// Nothing, which nothing changes.
-    pub const NOTHING: Self = Self { walls: [None; MOST_WALLS], wakes: f64::INFINITY };
+    pub const NOTHING: Self = Self { first: None, second: None, is_tip: false, wakes: f64::INFINITY };
 
     /// Whether any normal is the way from a side or a corner.
     #[inline(always)] // with the instructions of whoever asks
     pub fn is_beside(&self) -> bool {
-        self.walls.iter().flatten().any(|facing| facing.part != 0)
+        [&self.first, &self.second].into_iter().flatten().any(|facing| facing.part != 0)
     }
 }
 
@@ -109,7 +110,7 @@ impl Surfaces {
             short.note_alone(is_alone.then_some(number), lately);
         }
         let rims = short.may_have_rim(number).then_some(listed);
-        faced.walls[0] = glance.in_front((triangle, found), (rims, short.is_turned_away(number)), own);
+        faced.first = glance.in_front((triangle, found), (rims, short.is_turned_away(number)), own);
         true
     }
 
@@ -143,7 +144,6 @@ impl Surfaces {
         let mut candidates = Candidates::new((self, now), at, listed, nearest);
         let (triangles, reach, edge) = (listed.triangles, &reach, &edge);
         let (own, seen, before) = (None, SmallVec::new(), SmallVec::new());
-        let at = point.place(now.places);
         let mut way = Way { surfaces: self, now, point, at, triangles, reach, edge, own, seen, before };
         let mut wakes = f64::INFINITY;
         let mut look = |candidates: &Candidates<'_, '_>, number: usize, triangle: u32| {
@@ -303,10 +303,8 @@ struct Way<'a, R, E> {
 }
 
 impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
-    /// What is in its way: where only one is seen, that it is turned away is all that is asked. Each further one is
-    /// that of all walls of a corner with those before it which is most in its way: before a node several triangles are
-    /// as near. Behind more walls than it may face it is borne by where they meet: of some of them others would count
-    /// from step to step.
+    /// What is in its way: where only one is seen, that it is turned away is all that is asked. Another one is that of
+    /// all walls of a corner with the first which is most in its way: before a node several triangles are as near.
     fn finish(mut self) -> Faced {
         let seen = std::mem::take(&mut self.seen);
         let is_there = |facing: &&Facing| !self.is_behind_another(facing, &seen);
@@ -316,41 +314,28 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
             && !self.surfaces.is_at_rim(self.now, &only, (self.edge)(only.triangle))
             && self.surfaces.all_turned_away(self.now, self.point.nodes[0], only.normal)
         {
-            return Faced { walls: [Some(only), None, None], ..Faced::NOTHING };
+            return Faced { first: Some(only), ..Faced::NOTHING };
         }
-        let mut left: SmallVec<[(Facing, f64); 4]> = seen.into_iter().filter_map(|facing| self.ask(facing)).collect();
-        let mut faced = Faced::NOTHING;
-        for place in 0..MOST_WALLS {
-            let Some((wall, _)) = left.iter().copied().reduce(|most, other| self.more(most, other)) else { break };
-            let wall = faced.walls[place].insert(wall);
-            left.retain(|(other, _)| {
-                let edge = self.of_both(wall.triangle, other.triangle);
-                self.surfaces.is_corner(self.now.places, self.point, [wall, other], edge)
-            });
-        }
-        let is_behind = |wall: &Facing| wall.gap < 0.0;
-        if faced.walls.iter().flatten().all(is_behind) && left.iter().any(|(wall, _)| is_behind(wall)) {
-            faced.walls = [self.where_they_meet(&faced), None, None];
-        }
-        faced
+        let faced: SmallVec<[(Facing, f64); 4]> = seen.into_iter().filter_map(|facing| self.ask(facing)).collect();
+        let Some(first) = self.most_in_way(faced.iter().copied()) else { return Faced::NOTHING };
+        let is_wall = |(other, _): &(Facing, f64)| {
+            let edge = self.of_both(first.triangle, other.triangle);
+            self.surfaces.is_corner(self.now.places, self.point, [&first, other], edge)
+        };
+        let walls: SmallVec<[(Facing, f64); 4]> = faced.into_iter().filter(is_wall).collect();
+        let second = self.most_in_way(walls.iter().copied());
+        let is_third = |second: Facing| walls.iter().any(|(other, _)| other.normal.dot(second.normal) < CORNER);
+        Faced { first: Some(first), second, is_tip: second.is_some_and(is_third), ..Faced::NOTHING }
     }
 
-    /// The place nearest to it of walls that it is behind, along the way to there, and as deep as it is in one of them
-    /// at most: so that is not another depth where it comes before one of them.
-    fn where_they_meet(&self, faced: &Faced) -> Option<Facing> {
-        let Self { surfaces, now, at, .. } = *self;
-        let (first, deepest) = (faced.walls[0]?, faced.walls.iter().flatten().map(|wall| wall.gap).reduce(f64::min)?);
-        let OnTriangle { at: nearest, weights, .. } =
-            OnTriangle::nearest(at, surfaces.corners(now.places, first.triangle));
-        let normal = (nearest - at).try_normalize()?;
-        Some(Facing { weights, at: nearest, normal, gap: deepest, ..first })
-    }
-
-    /// The one of two that is more in its way, each with the cosine between its normal and the point's own.
-    fn more(&self, most: (Facing, f64), other: (Facing, f64)) -> (Facing, f64) {
-        let edge = self.of_both(most.0.triangle, other.0.triangle);
-        let [of_most, of_other] = [most, other].map(|(facing, turned)| in_way(&facing, turned, edge));
-        if of_other < of_most { other } else { most }
+    /// The one of some that is most in its way, each with the cosine between its normal and the point's own.
+    fn most_in_way(&self, some: impl Iterator<Item = (Facing, f64)>) -> Option<Facing> {
+        let more = |most: (Facing, f64), other: (Facing, f64)| {
+            let edge = self.of_both(most.0.triangle, other.0.triangle);
+            let [of_most, of_other] = [most, other].map(|(facing, turned)| in_way(&facing, turned, edge));
+            if of_other < of_most { other } else { most }
+        };
+        some.reduce(more).map(|(facing, _)| facing)
     }
 
     /// What the point faces of something that it sees, with the cosine between its normal and the point's own, if it

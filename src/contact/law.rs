@@ -1,12 +1,10 @@
 //! The law of contact between bodies: the impulses that keep predicted steps from ending inside one another.
 
-mod acting;
 mod of_nodes;
 mod tasks;
 
 use super::parts::Parts;
 use crate::backend::cpu::Cpu;
-pub use acting::Acting;
 use glam::{DVec3, DVec4};
 use of_nodes::OfNodes;
 use tasks::{Begin, Correct, Correction, Forces, Note, Push};
@@ -93,8 +91,8 @@ impl Contact {
 
     /// Finds the normal force of the step that was predicted, with the shares of nodes; gives it as a vector (N).
     #[inline(always)]
-    fn begin(&mut self, acting: &[Acting], responses: &[DVec4]) -> DVec3 {
-        self.find_yields(acting, responses);
+    fn begin(&mut self, shares: &[f64], responses: &[DVec4]) -> DVec3 {
+        self.find_yields(shares, responses);
         self.press(self.step)
     }
 
@@ -146,15 +144,15 @@ impl Contact {
         self.slip = if size > bound { slip * (bound / size) } else { slip };
     }
 
-    /// Finds how far it yields to forces, with the shares of nodes.
+    /// Finds how far it yields to forces, from the shares of nodes.
     #[inline(always)]
-    fn find_yields(&mut self, acting: &[Acting], responses: &[DVec4]) {
+    fn find_yields(&mut self, shares: &[f64], responses: &[DVec4]) {
         let (mut along_normal, mut largest) = (0.0, 0.0);
-        let (nodes, weights) = self.parts.slices();
+        let ((nodes, weights), normal) = (self.parts.slices(), self.normal.extend(0.0));
         for (&node, weight) in nodes.iter().zip(weights) {
-            let (acting, response) = (&acting[node as usize], responses[node as usize]);
-            along_normal += weight.abs() * acting.on(response.truncate() * self.normal);
-            largest += weight.abs() * acting.all() * response.max_element();
+            let (share, response) = (weight.abs() * shares[node as usize], responses[node as usize]);
+            along_normal += share * normal.dot(response * normal);
+            largest += share * response.max_element();
         }
         (self.yields, self.yields_along) = (along_normal, largest);
     }
@@ -181,9 +179,9 @@ pub struct ContactSet {
     pub responses: Vec<DVec4>,
     /// The forces on nodes (N) that [`solve`](Self::solve) or [`find_forces`](Self::find_forces) has found.
     pub forces: Vec<DVec4>,
-    /// What acts on each node, by which its mass is split.
-    acting: Vec<Acting>,
-    /// What a sweep changes of each contact's force (N); before that, their normals.
+    /// Into how many shares each node's mass is split.
+    shares: Vec<f64>,
+    /// What a sweep changes of each contact's force (N).
     changes: Vec<DVec3>,
     /// Contacts of each node; of none where they are too few for threads.
     of_nodes: OfNodes,
@@ -218,22 +216,19 @@ impl ContactSet {
 
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
-        let Self { batches, steps, earlier, responses, forces, acting, changes, of_nodes } = self;
+        let Self { batches, steps, earlier, responses, forces, shares, changes, of_nodes } = self;
         let contacts: usize = batches.iter().map(|contacts| size_of_val(&contacts[..])).sum();
         let of_contacts = contacts + size_of_val(&changes[..]) + of_nodes.bytes();
         let vectors = [steps, earlier, responses, forces].map(|all| size_of_val(&all[..]));
-        of_contacts + vectors.iter().sum::<usize>() + size_of_val(&acting[..])
+        of_contacts + vectors.iter().sum::<usize>() + size_of_val(&shares[..])
     }
 
     /// Finds the forces.
     ///
-    /// All contacts at once, with the mass of each node split among those that act along each other there: then no
-    /// correction overshoots, whatever their number and order, momentum is kept to rounding, and the kinetic energy does
-    /// not grow, for D of what they yield is never less than the exact coupling A. Of contacts i and j with weights w,
-    /// normals n and a node's response R that is Σ w_i w_j n_iᵀ R n_j over nodes, and D_i = Σ |w_i| √(Σ_j |w_j| ·
-    /// Σ_j |w_j| (n_iᵀ R n_j)²) at least the sum of |A_ij| over j, by Cauchy and Schwarz. What acts along one line is
-    /// split by weights alone (Tonge et al. 2012), and of walls across each other each has the more of it. Each further
-    /// sweep descends to the solution of the linear complementarity problem.
+    /// All contacts at once, with the mass of each node split among them by their weights: then no correction
+    /// overshoots, whatever their number and order (the sum over contacts of λᵀDλ is never less than λᵀAλ of the exact
+    /// coupling A, by Cauchy and Schwarz), momentum is kept to rounding, and the kinetic energy does not grow. Each
+    /// further sweep descends to the solution of the linear complementarity problem (Tonge et al. 2012).
     ///
     /// Friction is the return mapping of an elastic slip that each contact keeps: it sticks without creep, and slides
     /// with exactly the largest force.
@@ -246,18 +241,18 @@ impl ContactSet {
             false => self.of_nodes.clear(),
         }
         self.share_masses(cpu);
-        let (acting, responses) = (std::mem::take(&mut self.acting), std::mem::take(&mut self.responses));
+        let (shares, responses) = (std::mem::take(&mut self.shares), std::mem::take(&mut self.responses));
         let rub = self.contacts().any(|contact| contact.friction > 0.0);
         for sweep in 0..sweeps.max(1) {
             match sweep {
-                0 => self.press_first(&acting, &responses, cpu),
+                0 => self.press_first(&shares, &responses, cpu),
                 _ => self.change(Correction::Pressing, &responses, cpu),
             }
             if rub {
                 self.change(Correction::Rubbing, &responses, cpu);
             }
         }
-        (self.acting, self.responses) = (acting, responses);
+        (self.shares, self.responses) = (shares, responses);
         let Self { batches, steps, forces, changes, of_nodes, .. } = self;
         clear_forces(forces, steps.len());
         if of_nodes.is_empty() {
@@ -315,29 +310,27 @@ impl ContactSet {
         if beyond <= ROUNDING * size { 0.0 } else { beyond }
     }
 
-    /// Finds what acts on each node.
+    /// Splits the mass of each node among its contacts.
     fn share_masses(&mut self, cpu: &Cpu) {
-        let Self { batches, steps, acting, changes, of_nodes, .. } = self;
-        acting.clear();
-        acting.resize(steps.len(), Acting::default());
+        let Self { batches, steps, shares, of_nodes, .. } = self;
+        shares.clear();
+        shares.resize(steps.len(), 0.0);
         if !of_nodes.is_empty() {
-            changes.clear();
-            changes.extend(batches.iter().flatten().map(|contact| contact.normal));
-            return of_nodes.share(changes, acting, cpu);
+            return of_nodes.share(shares, cpu);
         }
-        for contact in batches.iter().flatten() {
-            contact.parts.iter().for_each(|(node, weight)| acting[node].add(weight, contact.normal));
+        for (node, weight) in batches.iter().flatten().flat_map(|contact| contact.parts.iter()) {
+            shares[node] += weight.abs();
         }
     }
 
     /// Finds normal forces, and corrects the steps of nodes by that. Steps against faces are known, so that of one
     /// thread each contact is gone to once.
-    fn press_first(&mut self, acting: &[Acting], responses: &[DVec4], cpu: &Cpu) {
+    fn press_first(&mut self, shares: &[f64], responses: &[DVec4], cpu: &Cpu) {
         if !self.of_nodes.is_empty() {
-            return self.change(Correction::First { acting, responses }, responses, cpu);
+            return self.change(Correction::First { shares, responses }, responses, cpu);
         }
         let Self { batches, steps, .. } = self;
-        batches.iter_mut().for_each(|contacts| cpu.dispatch(Begin { contacts, acting, responses, steps }));
+        batches.iter_mut().for_each(|contacts| cpu.dispatch(Begin { contacts, shares, responses, steps }));
     }
 
     /// Corrects forces, and the steps of nodes by that.

@@ -169,8 +169,8 @@ impl Looking<'_> {
                 surface.triangles.faced((now, point), listed, (reach, edge), (short, stays), kept);
             }
             if point.triangle.is_some() {
-                let walls = faced.walls.iter_mut().flatten();
-                walls.for_each(|facing| facing.gap = surface.gap_of_facet(point, facing));
+                let both = [&mut faced.first, &mut faced.second];
+                both.into_iter().flatten().for_each(|facing| facing.gap = surface.gap_of_facet(point, facing));
             }
             wake[place - first] = faced.wakes;
             tell(contacts, number, &faced, &mut made);

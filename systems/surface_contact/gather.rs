@@ -5,11 +5,10 @@ use super::faced::face;
 use super::{Meeting, Surface, SurfaceContacts, crossings, turns};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
-use crate::contact::{Beginning, Contact, ContactSet, Faced, Facing, MOST_WALLS, Parts, Point};
+use crate::contact::{Beginning, Contact, ContactSet, Faced, Facing, Parts, Point};
 use crate::math::Scalar;
 use crate::systems::tool_contact::STILL;
 use glam::{DVec3, DVec4};
-use smallvec::SmallVec;
 
 /// How far a point that is inside comes out in a step at most, in the smaller edges of both bodies: elements of neither
 /// are to turn over.
@@ -26,11 +25,11 @@ const NODES_A_TASK: usize = 1024;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
     pub point: u32,
-    /// How far it is outside of what it faces, of several the least (m).
+    /// How far it is outside of what it faces, of two the less (m).
     pub outside: f64,
     /// How deep it may be inside (m).
     pub allowed: f64,
-    /// Whether it faces more than one wall.
+    /// Whether it faces two walls.
     pub in_corner: bool,
 }
 
@@ -171,16 +170,11 @@ impl Nodes<'_> {
     /// What a point faces of what it sees, by where it would end.
     fn faced_at_end(&self, contacts: &SurfaceContacts, number: u32, faced: &Faced) -> Faced {
         let step = |point: &Point, facing: &Facing| self.parts(&contacts.surface, point, facing).step(self.steps);
-        let (mut walls, mut count) = ([None; MOST_WALLS], 0);
-        for facing in faced.walls.iter().flatten() {
-            let wall = contacts.faced_at_end(number, facing, false, step);
-            // several may end outside of the same
-            if walls[..count].iter().flatten().all(|other: &Facing| other.triangle != wall.triangle) {
-                walls[count] = Some(wall);
-                count += 1;
-            }
-        }
-        Faced { walls, ..*faced }
+        let at_end = |facing: &Facing| contacts.faced_at_end(number, facing, false, step);
+        let [first, second] = [&faced.first, &faced.second].map(|facing| facing.as_ref().map(at_end));
+        // both may end outside of the same
+        let is_other = |second: &Facing| first.is_none_or(|first| first.triangle != second.triangle);
+        Faced { first, second: second.filter(is_other), ..*faced }
     }
 
     /// Adds a contact of nodes with weights, along a normal with a gap (m), if it ends nearer than `within` (m): as far
@@ -213,28 +207,27 @@ impl Nodes<'_> {
     }
 }
 
-/// How deep a point may be inside (m) of what it faces, one face or the walls of a corner: as deep as it is found
+/// How deep a point may be inside (m) of what it faces, one face or the two walls of a corner: as deep as it is found
 /// there and no motion has brought it, by and by less. A point that was not seen before (at the start, laid bare, at a
 /// corner that comes round) is not thrown out in a step. One that touches went outwards as far as it did in the last
 /// step, and not as far as was foreseen: tools may have held what it touches.
 ///
-/// Of walls that change places it is not known which was which. So what has faced several, and what has touched nothing,
-/// is taken to have gone as far as any motion may have brought it; and of several, one of which it has touched, that one
-/// is the one of which motion tells most.
+/// Of walls that change places it is not known which was which. So what has faced two, and what has touched nothing, is
+/// taken to have gone as far as any motion may have brought it; and of two, one of which it has touched, that one is
+/// the one of which motion tells more.
 pub(super) fn allowed<T: Scalar>(touch: &[T], faced: &[Outside], in_step: &InStep) -> f64 {
     let [before, last] = [touch[3].to_f64(), touch[5].to_f64()];
     let PointState { did, in_corner } = PointState::of(touch[4].to_f64());
     let lowest = faced.iter().map(|outside| outside.now).fold(f64::INFINITY, f64::min);
     let unexpected = |outside: &Outside| outside.now - (last + outside.since);
-    let by_motion = |one: &Outside, other: &Outside| unexpected(one).abs().total_cmp(&unexpected(other).abs());
-    let old = faced.iter().enumerate().min_by(|(_, one), (_, other)| by_motion(one, other));
-    let deeper = match (did, old) {
+    let deeper = match (did, faced) {
         (Did::Free, _) => lowest,
-        (Did::Sticks | Did::Slides, Some((place, old))) if !in_corner => {
-            // behind the line where walls meet it is behind another as far as in the one, or less
-            let before = (old.now - old.went).min(0.0);
-            let others = faced.iter().enumerate().filter(|&(other, _)| other != place);
-            others.map(|(_, new)| new.now - new.went - before).fold(unexpected(old), f64::min)
+        (Did::Sticks | Did::Slides, [one]) if !in_corner => unexpected(one),
+        (Did::Sticks | Did::Slides, [one, other]) if !in_corner => {
+            let is_one = unexpected(one).abs() <= unexpected(other).abs();
+            let (old, new) = if is_one { (one, other) } else { (other, one) };
+            // behind the line where both meet it is behind the other as far as in the one, or less
+            unexpected(old).min((new.now - new.went) - (old.now - old.went).min(0.0))
         }
         _ => lowest - (last - 2.0 * in_step.largest),
     };
@@ -257,20 +250,33 @@ pub(super) fn gather<T: Scalar>(
     face(contacts, reach, cpu, batches.iter_mut().zip(&mut *seen), |contacts, point, faced, (batch, seen)| {
         let at_end = faced.is_beside().then(|| nodes.faced_at_end(contacts, point, faced));
         let faced = at_end.as_ref().unwrap_or(faced);
-        let of = &contacts.surface.points[point as usize];
-        let walls = faced.walls.iter().flatten();
-        let sights: SmallVec<[Sight<'_>; MOST_WALLS]> = walls.map(|facing| nodes.sight(contacts, of, facing)).collect();
-        let Some(first) = sights.first() else { return };
+        let Some(first) = &faced.first else { return };
         let kept = contacts.kept(point);
         let touch = of_bodies[kept.body].kept(kept);
-        let outsides: SmallVec<[Outside; MOST_WALLS]> = sights.iter().map(|sight| sight.outside).collect();
-        let outside = outsides.iter().map(|outside| outside.now).fold(f64::INFINITY, f64::min);
-        let in_step = contacts.in_step(of, first.facing, clock);
+        let of = &contacts.surface.points[point as usize];
+        let in_step = contacts.in_step(of, first, clock);
+        let sight = nodes.sight(contacts, of, first);
         // as it is kept
-        let allowed = T::from_f64(allowed(touch, &outsides, &in_step)).to_f64();
-        seen.push(Seen { point, outside, allowed, in_corner: sights.len() > 1 });
-        for sight in sights {
+        let allowed = |faced: &[Outside]| T::from_f64(allowed(touch, faced, &in_step)).to_f64();
+        let mut meet = |sight: Sight<'_>, allowed: f64| {
             nodes.meet((contacts, of_bodies), (sight, touch), (point, allowed), batch);
+        };
+        let other = faced.second.as_ref().map(|second| nodes.sight(contacts, of, second));
+        let in_corner = other.is_some() && !faced.is_tip;
+        let (outside, allowed) = match &other {
+            Some(other) if in_corner => {
+                (sight.outside.now.min(other.outside.now), allowed(&[sight.outside, other.outside]))
+            }
+            _ => (sight.outside.now, allowed(&[sight.outside])),
+        };
+        seen.push(Seen { point, outside, allowed, in_corner });
+        meet(sight, allowed);
+        if let Some(other) = other {
+            // of a tip's it is not known how the point got there; springs press it out all the same
+            let body = contacts.surface.triangles.bodies[other.facing.triangle as usize];
+            let springs = contacts.meeting(of.body, body).is_some_and(|meeting| meeting.spring.is_some());
+            let let_in = if springs { 0.0 } else { (other.outside.now + in_step.settling).min(0.0) };
+            meet(other, if in_corner { allowed } else { let_in });
         }
     });
     for &Seen { point, outside, allowed, in_corner } in seen.iter().flatten() {

@@ -1,9 +1,9 @@
 //! The kernels of contact between surfaces. In a step, for each body: where its surface is
 //! (`shaders/surface_contact_place.wgsl`), where it would go (`surface_contact_foresee`, and `surface_contact_hold`
 //! where tools may hold it), what its nodes and points of its faces face (`surface_contact`). Then for all: which edges
-//! cross (`surface_contact_edges`), what acts on each node, by which masses are split (`surface_contact_share`), and in
-//! each sweep normal forces (`surface_contact_impulse`), what they do to nodes (`surface_contact_apply`), and the same
-//! with `surface_contact_friction` where there is any. At last, for each body: its loads and what contact takes of it
+//! cross (`surface_contact_edges`), into how many shares masses are split (`surface_contact_share`), and in each sweep
+//! normal forces (`surface_contact_impulse`), what they do to nodes (`surface_contact_apply`), and the same with
+//! `surface_contact_friction` where there is any. At last, for each body: its loads and what contact takes of it
 //! (`surface_contact_push`), and what is kept of contacts (`surface_contact_touch`).
 
 use super::device::{MOTION_WORDS, SurfaceContact, find, is_on_device, note};
@@ -30,9 +30,6 @@ uniform!(SurfaceBody { first, count, displacements });
 
 /// Words of a contact beside its nodes and weights, as in `shaders/surface_contacts.wgsl`.
 const CONTACT_WORDS: usize = 19;
-
-/// Numbers of a node that say what acts on it, likewise.
-const SHARE_NUMBERS: usize = 6;
 
 /// Buffers that kernels share.
 struct Shared {
@@ -190,7 +187,7 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
         motion: buffers.constants("motion of surfaces".into(), &[0; 4 * MOTION_WORDS]),
         nodes: buffers.constants("nodes of surfaces".into(), &vec![0; 4 * 15 * nodes]),
         rows: buffers.constants("rows of surfaces".into(), &words(contacts.row_words(world))),
-        shares: buffers.constants("what acts on nodes of surfaces".into(), &vec![0; 4 * SHARE_NUMBERS * nodes]),
+        shares: buffers.constants("shares of nodes of surfaces".into(), &vec![0; 4 * nodes]),
         contacts: {
             let count = whole.contacts as usize;
             buffers.constants("contacts".into(), &vec![0; 4 * (CONTACT_WORDS + 2 * parts) * count])

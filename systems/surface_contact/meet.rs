@@ -173,7 +173,7 @@ fn note_touches<T: Scalar>(
     contacts.surface.figures.deepest = deepest;
 }
 
-/// Notes that a point that faced something touches it, and how far it has slipped elastically: of several walls the first
+/// Notes that a point that faced something touches it, and how far it has slipped elastically: of two walls the first
 /// that it touches, for along both it has slipped alike.
 pub(super) fn note_touch<T: Scalar>(touch: &mut [T], contact: &Contact) {
     let faced = PointState::of(touch[4].to_f64());

@@ -6,7 +6,7 @@ use super::meet::SignedNodes;
 use super::{Meeting, SurfaceContacts, crossings, faced, turns};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
-use crate::contact::{Facing, MOST_WALLS, Point};
+use crate::contact::{Facing, Point};
 use crate::math::Scalar;
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -17,7 +17,7 @@ pub(super) enum What {
     /// Its first face: it is kept how it got there, and how far it has slipped.
     First,
     /// Another one, which knows how far the point has slipped.
-    Another,
+    Second,
     /// An edge that crosses one, of which nothing is kept.
     Crossing,
 }
@@ -90,24 +90,24 @@ pub(super) fn pair<T: Scalar>(
     for &(number, faced) in found.iter().flatten() {
         let point = &surface.points[number as usize];
         let at_end = |facing: &Facing| contacts.faced_at_end(number, facing, true, goes_on);
-        let mut walls: SmallVec<[Facing; MOST_WALLS]> = faced.walls.iter().flatten().map(at_end).collect();
+        let both = [&faced.first, &faced.second].into_iter().flatten().map(at_end);
+        let mut both: SmallVec<[Facing; 2]> = both.collect();
         // of walls that are as near rounding chooses which is the first, and what is kept of one would be taken for
-        // what is kept of another; several may end outside of the same
-        walls.sort_by_key(|facing| facing.triangle);
-        walls.dedup_by_key(|facing| facing.triangle);
-        let sights = walls.iter().filter_map(|facing| {
+        // what is kept of the other; both may end outside of the same
+        both.sort_by_key(|facing| facing.triangle);
+        both.dedup_by_key(|facing| facing.triangle);
+        let sights = both.iter().filter_map(|facing| {
             let meeting = contacts.meeting(point.body, surface.triangles.bodies[facing.triangle as usize])?;
             let went = facing.normal.dot(goes_on(point, facing));
             // how far it is outside was noted at the end of that
             Some((facing, meeting, Outside { now: contacts.gap(point, facing), since: 0.0, went }))
         });
-        let sights: SmallVec<[(&Facing, Meeting, Outside); MOST_WALLS]> = sights.collect();
+        let sights: SmallVec<[(&Facing, Meeting, Outside); 2]> = sights.collect();
         let Some(first) = sights.first() else { continue };
-        let faced: SmallVec<[Outside; MOST_WALLS]> = sights.iter().map(|&(.., outside)| outside).collect();
+        let faced: SmallVec<[Outside; 2]> = sights.iter().map(|&(.., outside)| outside).collect();
         let kept = contacts.kept(number);
         let allowed = allowed(bodies[kept.body].kept(kept), &faced, &contacts.in_step(point, first.0, clock));
-        let kinds = std::iter::once(What::First).chain(std::iter::repeat(What::Another));
-        for (&(facing, meeting, outside), what) in sights.iter().zip(kinds) {
+        for (&(facing, meeting, outside), what) in sights.iter().zip([What::First, What::Second]) {
             let (nodes, points) = surface.between(point, facing);
             // on the way to rest nobody knows it before nodes are where they will be
             let turned = match clock.relaxation {

@@ -7,7 +7,7 @@ use super::meet::{forget, note_touch, push, release};
 use super::pairs::{Pair, What};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
-use crate::contact::{Acting, Contact, Parts};
+use crate::contact::{Contact, Parts};
 use crate::error::Error;
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
@@ -67,7 +67,7 @@ pub(super) fn press<T: Scalar>(
     let mut solved = std::mem::take(&mut contacts.surface.solved);
     solved.clear();
     let pairs = std::mem::take(&mut contacts.surface.pairs);
-    let acting = springs.shared.then(|| acting_on(contacts, &gathered, &pairs));
+    let shares = springs.shared.then(|| shares_of(contacts, &gathered, &pairs));
     for pair in &pairs {
         let gap = pair.gap(&contacts.surface.places);
         if pair.what == What::First {
@@ -77,8 +77,8 @@ pub(super) fn press<T: Scalar>(
         if gap > 0.0 {
             continue;
         }
-        let mass = match &acting {
-            Some(acting) => shared_mass(contacts, pair, (&gathered, &acting[..]), bodies),
+        let mass = match &shares {
+            Some(shares) => shared_mass(contacts, pair, (&gathered, &shares[..]), bodies),
             None => mass_between(contacts, pair.of_point().iter().copied(), bodies),
         };
         add(contacts, &mut gathered, (pair, gap, mass), (springs, time), bodies, &mut solved);
@@ -106,21 +106,21 @@ fn mass_between<T: Scalar>(
     parts.map(mass).sum()
 }
 
-/// What acts on each node in the set, by which its mass is split; points of faces count that are about to touch, as in
-/// explicit steps.
-fn acting_on(contacts: &SurfaceContacts, gathered: &Gathered, pairs: &[Pair]) -> Vec<Acting> {
+/// Into how many shares the mass of each node in the set is split, by the weights of all that touches there; points of
+/// faces count that are about to, as in explicit steps.
+fn shares_of(contacts: &SurfaceContacts, gathered: &Gathered, pairs: &[Pair]) -> Vec<f64> {
     let surface = &contacts.surface;
-    let mut acting = vec![Acting::default(); gathered.set.steps.len()];
+    let mut shares = vec![0.0; gathered.set.steps.len()];
     for pair in pairs {
         let is_of_face = surface.points[pair.point as usize].triangle.is_some();
         let within = if is_of_face { SHARES * pair.meeting.edge } else { 0.0 };
         if pair.gap(&surface.places) <= within {
             for &(node, weight) in &pair.nodes {
-                acting[gathered.slots[node as usize] as usize].add(weight, pair.normal);
+                shares[gathered.slots[node as usize] as usize] += weight.abs();
             }
         }
     }
-    acting
+    shares
 }
 
 /// The mass (kg) that resists a force between a point and what it faces along the normal, with the shares of nodes; 0
@@ -128,7 +128,7 @@ fn acting_on(contacts: &SurfaceContacts, gathered: &Gathered, pairs: &[Pair]) ->
 fn shared_mass<T: Scalar>(
     contacts: &SurfaceContacts,
     pair: &Pair,
-    (gathered, acting): (&Gathered, &[Acting]),
+    (gathered, shares): (&Gathered, &[f64]),
     bodies: &[BodySlices<'_, T>],
 ) -> f64 {
     let mut yields = 0.0;
@@ -138,8 +138,8 @@ fn shared_mass<T: Scalar>(
         let mass = of_body.weighs[row].to_f64();
         if mass > 0.0 {
             let free = DVec3::from_array([0, 1, 2].map(|axis| f64::from(1 - (of_body.axes[row] >> axis & 1))));
-            let acting = &acting[gathered.slots[node as usize] as usize];
-            yields += weight.abs() * acting.on(free * pair.normal) / mass;
+            let share = weight.abs() * shares[gathered.slots[node as usize] as usize];
+            yields += share * pair.normal.dot(free * pair.normal) / mass;
         }
     }
     if yields > 0.0 { 1.0 / yields } else { 0.0 }
@@ -191,7 +191,7 @@ fn note<T: Scalar>(
         let outside = pair.gap(&contacts.surface.places) + pair.allowed;
         let kept = contacts.kept(pair.point);
         let touch = bodies[kept.body].kept_mut(kept);
-        let in_corner = pair.what == What::Another;
+        let in_corner = pair.what == What::Second;
         let outside = if in_corner { outside.min(touch[5].to_f64()) } else { outside };
         set_vector(touch, 0, DVec3::ZERO);
         let numbers = [pair.allowed, PointState { did: Did::Faces, in_corner }.number(), outside];

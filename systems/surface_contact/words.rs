@@ -3,7 +3,6 @@
 use super::survey::MARGIN;
 use super::{Surface, SurfaceContacts};
 use crate::components::*;
-use crate::contact::MOST_WALLS;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -79,7 +78,7 @@ impl Layout {
         // an item's own nodes, and those of each thing that is near it
         let (own, of_near) = (of_nodes + 4 * face_points + 2 * edges, if face_points > 0 { 4 } else { 3 });
         let displacements = inverse + nodes + 1 + own + of_near * pairs;
-        Self { list: 2, inverse, displacements, contacts: MOST_WALLS * points + edge_contacts, edge_contacts, pairs }
+        Self { list: 2, inverse, displacements, contacts: 2 * points + edge_contacts, edge_contacts, pairs }
     }
 }
 

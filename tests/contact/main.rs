@@ -12,7 +12,6 @@ mod capstan;
 mod configurations;
 mod contact_fields;
 mod copies;
-mod corners;
 mod curved_tools;
 mod discs;
 mod edges;

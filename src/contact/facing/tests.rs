@@ -46,7 +46,7 @@ pub(in crate::contact) fn faced(
     // what the shortlist leaves out changes nothing
     assert_eq!(by_shortlist(surfaces, (now, point), listed, &reach, &short).0, found);
     // forces act along one line, but for what counts as being on a face
-    for facing in found.walls.iter().flatten() {
+    for facing in [&found.first, &found.second].into_iter().flatten() {
         let corners = surfaces.corners(places, facing.triangle).into_iter().zip(facing.weights);
         let bears: DVec3 = corners.map(|(corner, weight)| corner * weight).sum();
         let off = (point.place(places) - bears).distance(facing.gap * facing.normal);
@@ -67,9 +67,9 @@ fn a_place_on_the_side_of_two_faces_is_as_far_from_both() {
     for height in [0.1, 1e-5, 0.0, -1e-5, -0.1] {
         let (surfaces, places) = square(height);
         let faced = faced(&surfaces, &places, &Point::node(1, 4), &[0, 1], |_| 0.2);
-        let first = faced.walls[0].expect("it faces them");
+        let first = faced.first.expect("it faces them");
         assert!((first.gap - height).abs() < 1e-15 && (first.normal - DVec3::Z).length() < 1e-12, "{first:?}");
-        assert_eq!((first.triangle, faced.walls[1]), (0, None));
+        assert_eq!((first.triangle, faced.second), (0, None));
     }
 }
 
@@ -83,7 +83,7 @@ fn where_the_surface_goes_on_its_other_parts_are_not_faced() {
     let surfaces = Surfaces::new(7, triangles, vec![0; 4], vec![0.5; 4]);
     for place in [(1.3, 0.5, 0.0), (1.3, 0.5, 0.1), (1.1, 0.0, -0.2), (1.4, 1.0, 1e-9), (1.4, 1.0, -1e-9)] {
         places[6] = place.into();
-        let faced = |triangles: &[u32]| faced(&surfaces, &places, &Point::node(1, 6), triangles, |_| 1.0).walls[0];
+        let faced = |triangles: &[u32]| faced(&surfaces, &places, &Point::node(1, 6), triangles, |_| 1.0).first;
         assert_eq!(faced(&[0, 1]), None, "{place:?}");
         assert!((faced(&[0, 1, 2, 3]).expect("it faces one").gap - place.2).abs() < 1e-15);
     }
@@ -94,7 +94,7 @@ fn farther_than_the_reach_or_deeper_than_the_inside_is_nothing() {
     for (height, there) in [(0.21, false), (0.19, true), (-0.49, true), (-0.51, false)] {
         let (surfaces, places) = square(height);
         let faced = faced(&surfaces, &places, &Point::node(1, 4), &[0, 1], |_| 0.2);
-        assert_eq!(faced.walls[0].is_some(), there, "{height}");
+        assert_eq!(faced.first.is_some(), there, "{height}");
     }
 }
 
@@ -114,8 +114,8 @@ fn a_wall_that_rises_is_another_face_and_one_that_falls_off_is_not() {
             let surfaces = Surfaces::new(9, triangles, vec![0, 0, 0, 0, 1], vec![0.5; 5]);
             let point = Point { triangle: Some(4), ..Point::node(1, 6) };
             let faced = faced(&surfaces, &places, &point, &[0, 1, 2, 3], |_| 0.2);
-            assert!(faced.walls[0].is_some(), "{rises}, {height}");
-            assert_eq!(faced.walls[1].is_some(), rises, "{rises}, {height}: {faced:?}");
+            assert!(faced.first.is_some(), "{rises}, {height}");
+            assert_eq!(faced.second.is_some(), rises, "{rises}, {height}: {faced:?}");
         }
     }
 }
@@ -134,7 +134,7 @@ fn what_has_sunk_into_a_corner_is_borne_by_both_walls() {
             let triangles = vec![[0, 2, 1], [0, 1, 3], [4, 6, 5], [4, 7, 6], [4, 5, 7]];
             let surfaces = Surfaces::new(8, triangles, vec![0, 0, 1, 1, 1], vec![0.5; 5]);
             let faced = faced(&surfaces, &places, &Point::node(1, 4), &[0, 1], |_| 0.2);
-            for facing in [faced.walls[0], faced.walls[1]] {
+            for facing in [faced.first, faced.second] {
                 let facing = facing.expect("both walls");
                 let normal = surfaces.normal(&places, facing.triangle);
                 assert!(normal.z > 0.5 && facing.normal == normal, "{facing:?}");
@@ -163,26 +163,9 @@ fn before_a_node_of_the_line_both_walls_are_faced() {
         let triangles: Vec<[u32; 3]> = order.map(|i: usize| all[i]).into_iter().chain(of_cone).collect();
         let surfaces = Surfaces::new(11, triangles, vec![0, 0, 0, 0, 0, 0, 1, 1, 1], vec![0.5; 9]);
         let faced = faced(&surfaces, &places, &Point::node(1, 7), &[0, 1, 2, 3, 4, 5], |_| 0.2);
-        let normals = [faced.walls[0], faced.walls[1]].map(|facing| facing.map(|facing| facing.normal.x.signum()));
+        let normals = [faced.first, faced.second].map(|facing| facing.map(|facing| facing.normal.x.signum()));
         // less deep in the left one, which is above the node by less
         assert_eq!(normals, [Some(1.0), Some(-1.0)], "{order:?}: {faced:?}");
-    }
-}
-
-/// What has sunk into a tip of three walls is in all three, in whatever order their triangles are.
-#[test]
-fn in_a_tip_three_walls_are_faced() {
-    let corners = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)];
-    let cone = [(-0.02, -0.03, -0.01), (0.9, 0.3, 0.3), (0.3, 0.9, 0.3), (0.3, 0.3, 0.9)];
-    let places: Vec<DVec3> = corners.into_iter().chain(cone).map(DVec3::from).collect();
-    let walls = [[0, 1, 2], [0, 2, 3], [0, 3, 1]];
-    for order in [[0, 1, 2], [2, 0, 1], [1, 2, 0], [0, 2, 1], [2, 1, 0], [1, 0, 2]] {
-        let triangles = order.map(|i: usize| walls[i]).into_iter().chain([[4, 6, 5], [4, 7, 6], [4, 5, 7]]).collect();
-        let surfaces = Surfaces::new(8, triangles, vec![0, 0, 0, 1, 1, 1], vec![0.5; 6]);
-        let faced = faced(&surfaces, &places, &Point::node(1, 4), &[0, 1, 2], |_| 0.2);
-        let walls = faced.walls.map(|facing| facing.expect("each of them"));
-        assert_eq!(walls.map(|facing| facing.normal), [DVec3::Z, DVec3::X, DVec3::Y], "{order:?}");
-        walls.iter().zip([0.01, 0.02, 0.03]).for_each(|(facing, deep)| assert!((facing.gap + deep).abs() < 1e-12));
     }
 }
 
@@ -202,7 +185,7 @@ fn beyond_what_is_thin_is_not_inside() {
     assert!(normals[0].z < 0.0 && normals[1].z < 0.0 && normals[2].z > 0.0, "{normals:?}");
     assert!(normals[2].dot(normals[0]) < TURNED_AWAY, "it would face the far flank");
     let faced = faced(&surfaces, &places, &Point::node(1, 4), &[0, 1], |_| 0.01);
-    assert_eq!((faced.walls[0], faced.walls[1]), (None, None));
+    assert_eq!((faced.first, faced.second), (None, None));
 }
 
 /// A floor and a slope beside it, up by 25° or down by 60°, and a point that looks straight down. In front of both it
@@ -224,7 +207,7 @@ fn outside_of_several_faces_the_nearest_is_in_the_way_and_inside_the_one_that_is
         let surfaces = Surfaces::new(9, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]], vec![0, 0, 1], vec![0.5; 3]);
         let point = Point { triangle: Some(2), ..Point::node(1, 6) };
         let faced = faced(&surfaces, &places, &point, &[0, 1], |_| 1.0);
-        assert_eq!(faced.walls[0].map(|first| first.triangle), Some(expected), "{at}: {faced:?}");
+        assert_eq!(faced.first.map(|first| first.triangle), Some(expected), "{at}: {faced:?}");
     }
 }
 
@@ -234,7 +217,7 @@ fn triangles_without_area_are_never_faced() {
         [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (2.0, 0.0, 0.0), (1.0, 0.0, 0.1)].map(DVec3::from).to_vec();
     let surfaces = Surfaces::new(4, vec![[0, 1, 2], [0, 0, 0]], vec![0; 2], vec![0.5; 2]);
     let faced = faced(&surfaces, &places, &Point::node(1, 3), &[0, 1], |_| 1.0);
-    assert_eq!(faced.walls[0], None);
+    assert_eq!(faced.first, None);
 }
 
 /// Two blocks of 12 triangles, the upper one turned a little and moved, so that some of its corners are beyond the rim
@@ -269,7 +252,7 @@ fn beside_rims_and_at_rims_a_glance_tells() {
                 continue;
             }
             let (same, at_a_glance) = by_shortlist(&surfaces, (now, &point), listed, &|_| 0.05, &short);
-            assert_eq!(same.walls, found.walls);
+            assert_eq!((same.first, same.second), (found.first, found.second));
             let place = places[node as usize];
             let is_beyond = place.min(DVec3::ONE - place).truncate().min_element() < 0.0;
             let counted = if is_beyond { &mut beyond } else { &mut before };
@@ -329,8 +312,8 @@ fn one_triangle_alone_tells_what_all_tell_while_little_moves() {
         }
         if let Some(seen) = glance(&mut short, &places, gone) {
             let (_, found) = of_all(&places);
-            assert_eq!(seen.walls, found.walls);
-            told += usize::from(seen.walls[0].is_some());
+            assert_eq!((seen.first, seen.second), (found.first, found.second));
+            told += usize::from(seen.first.is_some());
         }
         // farther than that all are looked at
         let all = short.triangles_now(Lately { gone: 1.01 * farther, farther });

@@ -1,6 +1,6 @@
 //! The contacts of each node, by which threads add up what they do, in the order in which one thread would.
 
-use super::{Acting, Contact};
+use super::Contact;
 use crate::backend::cpu::Cpu;
 use glam::{DVec3, DVec4};
 
@@ -57,11 +57,9 @@ impl OfNodes {
         &self.contacts[self.starts[node] as usize..self.starts[node + 1] as usize]
     }
 
-    /// Adds to each node its contacts, whose normals these are.
-    pub fn share(&self, normals: &[DVec3], acting: &mut [Acting], cpu: &Cpu) {
-        self.each(acting, cpu, |node, acting| {
-            self.of(node).iter().for_each(|&(contact, weight)| acting.add(weight, normals[contact as usize]));
-        });
+    /// Adds to each node the weights of its contacts.
+    pub fn share(&self, shares: &mut [f64], cpu: &Cpu) {
+        self.each(shares, cpu, |node, share| self.of(node).iter().for_each(|(_, weight)| *share += weight.abs()));
     }
 
     /// Adds to each node what forces of its contacts (N) come to there.

@@ -1,6 +1,6 @@
 //! What is done contact by contact, as tasks that have the machine's registers.
 
-use super::{Acting, Contact};
+use super::Contact;
 use glam::{DVec3, DVec4};
 use pulp::{Simd, WithSimd};
 
@@ -8,7 +8,7 @@ use pulp::{Simd, WithSimd};
 #[derive(Clone, Copy)]
 pub(super) enum Correction<'a> {
     /// [`Contact::begin`].
-    First { acting: &'a [Acting], responses: &'a [DVec4] },
+    First { shares: &'a [f64], responses: &'a [DVec4] },
     /// [`Contact::press`].
     Pressing,
     /// [`Contact::rub`].
@@ -18,7 +18,7 @@ pub(super) enum Correction<'a> {
 /// The task of finding normal forces, contact by contact, and what they do to nodes.
 pub(super) struct Begin<'a> {
     pub contacts: &'a mut [Contact],
-    pub acting: &'a [Acting],
+    pub shares: &'a [f64],
     pub responses: &'a [DVec4],
     pub steps: &'a mut [DVec4],
 }
@@ -28,10 +28,10 @@ impl WithSimd for Begin<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         // as long as each other: a node is looked for once
-        let Self { contacts, acting, responses, steps } = self;
-        let (acting, steps) = (&acting[..responses.len()], &mut steps[..responses.len()]);
+        let Self { contacts, shares, responses, steps } = self;
+        let (shares, steps) = (&shares[..responses.len()], &mut steps[..responses.len()]);
         for contact in contacts {
-            let force = contact.begin(acting, responses);
+            let force = contact.begin(shares, responses);
             contact.parts.push(force, responses, steps);
         }
     }
@@ -51,7 +51,7 @@ impl WithSimd for Correct<'_> {
     fn with_simd<S: Simd>(self, _: S) {
         for (contact, change) in self.contacts.iter_mut().zip(self.changes) {
             *change = match self.correction {
-                Correction::First { acting, responses } => contact.begin(acting, responses),
+                Correction::First { shares, responses } => contact.begin(shares, responses),
                 Correction::Pressing => contact.press(contact.parts.step(self.steps)),
                 Correction::Rubbing => contact.rub(self.steps),
             };

@@ -30,10 +30,10 @@ fn sees_leaning(at: [f64; 3], own: DVec3, leans: f64) -> Option<(DVec3, f64, DVe
     let point = Point { triangle: Some(12), ..Point::node(1, 8) };
     let all: Vec<u32> = (0..12).collect();
     let found = faced(&surfaces, &places, &point, &all, |_| 0.2);
-    found.walls[0].map(|first| {
+    found.first.map(|first| {
         let corners = surfaces.corners(&places, first.triangle);
         let borne = corners.into_iter().zip(first.weights).map(|(corner, weight)| corner * weight).sum();
-        (first.normal, first.gap, borne, found.walls[1].is_some())
+        (first.normal, first.gap, borne, found.second.is_some())
     })
 }
 
@@ -69,7 +69,7 @@ fn what_is_far_before_a_wall_at_its_rim_does_not_face_it() {
         let point = Point { triangle: Some(12), ..Point::node(1, 8) };
         let all: Vec<u32> = (0..12).collect();
         let found = faced(&surfaces, &places, &point, &all, |_| 0.8);
-        assert_eq!(found.walls[0].is_some(), faces, "{above}: {found:?}");
+        assert_eq!(found.first.is_some(), faces, "{above}: {found:?}");
     }
 }
 

@@ -110,7 +110,7 @@ pub(super) fn find(
         let (mut faced, mut short) = (Faced::NOTHING, Shortlist::UNKNOWN);
         let of_point = (&mut short, Stays::default());
         surfaces.faced((now, point), listed, (&reach, &edge), of_point, (&mut faced, &mut kept));
-        let Some(facing) = faced.walls[0] else { continue };
+        let Some(facing) = faced.first else { continue };
         let gap = facing.gap - thickness(facing.triangle);
         for (node, _) in point.parts().filter(|&(node, weight)| weight > 0.0 && wanted[node as usize]) {
             gaps[node as usize] = gaps[node as usize].min(gap);

@@ -55,14 +55,6 @@ fn a_wall_that_comes_round_does_not_throw_out() {
     for both in [[outside(-1e-6, 0.0), outside(-1e-3, -1e-6)], [outside(-1e-3, -1e-6), outside(-1e-6, 0.0)]] {
         assert!((allowed(&one, &both, &STEP) + 0.998e-3).abs() < 1e-12);
     }
-    // of three walls there is one that is known, whichever that is
-    let known = outside(-1e-6, 0.0);
-    for place in 0..3 {
-        let mut three = [outside(-1e-3, -1e-6), outside(-5e-4, -1e-6), outside(-2e-3, -1e-6)];
-        let deepest = if place == 2 { 1e-3 } else { 2e-3 };
-        three[place] = known;
-        assert!((allowed(&one, &three, &STEP) + deepest - 2e-6).abs() < 1e-12, "{place}");
-    }
     // what was sunk in the one and comes before the line where both meet is not let in into the other
     let sunk = touch(Did::Sticks, false, [0.0, -1e-3]);
     assert_eq!(allowed(&sunk, &[outside(-1e-3, 0.0), outside(-9e-4, 0.0)], &STEP), 0.0);
