@@ -255,7 +255,7 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     let did = surface_touch[at + 4u] - select(0.0, IN_CORNER, was_in_corner);
     begin_none(2u * point);
     begin_none(2u * point + 1u);
-    let in_corner = both.first.there && both.second.there && !both.is_tip;
+    let in_corner = both.first.there && both.second.there;
     var allowed = 0.0;
     var lowest = 0.0;
     if both.first.there {
@@ -274,10 +274,7 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
         allowed = max(min(before + min(deeper, 0.0) + settling, 0.0), min(lowest, 0.0));
         meet(2u * point, point, place, both.first, first, allowed, slip, did);
         if both.second.there {
-            // of a tip's it is not known how the point got there; springs press it out all the same
-            let springs = meeting_number(meeting_with(both.second.triangle), 4u) > 0.0;
-            let let_in = select(min(second.now + settling, 0.0), 0.0, springs);
-            meet(2u * point + 1u, point, place, both.second, second, select(let_in, allowed, in_corner), slip, did);
+            meet(2u * point + 1u, point, place, both.second, second, allowed, slip, did);
         }
     }
     for (var k = 0u; k < 3u; k++) {

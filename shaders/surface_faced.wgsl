@@ -22,7 +22,6 @@ fn is_more_in_way(facing: Facing, other: Facing) -> bool {
 struct Faced {
     first: Facing,
     second: Facing,
-    is_tip: bool, // whether there is a third wall, which does not count
 }
 
 // Whether a point that is deep in a face is outside of the body, beyond what is thin behind that: in front of another
@@ -70,8 +69,25 @@ fn is_near_side(facing: Facing, corners: array<vec3<f32>, 3>, near: f32) -> bool
         || facing.weights.z * twice < near * length(corners[1] - corners[0]);
 }
 
+// The place of a wall that is nearest to a point, along the way to there, with the depth that it has in one of those
+// that meet there.
+fn where_they_meet(wall: Facing, point: vec3<f32>, deepest: f32) -> Faced {
+    let found = nearest(corners_of(wall.triangle, point));
+    let distance = length(found.at);
+    var only: Faced;
+    only.first = wall;
+    only.first.weights = found.weights;
+    only.first.at = found.at;
+    only.first.normal = found.at / max(distance, 1e-37);
+    only.first.gap = deepest;
+    only.first.there = distance > 0.0;
+    only.second.there = false;
+    return only;
+}
+
 // The face that is most in a point's way, and of those that are walls of a corner with it the one that is: several
-// triangles of each wall are as near to what is behind a node of the line in which walls meet.
+// triangles of each wall are as near to what is behind a node of the line in which walls meet. Behind three it is borne
+// by where they meet.
 fn faced(number: u32, point: vec3<f32>) -> Faced {
     let hold = lists_hold();
     let starts = surface.list + number;
@@ -82,12 +98,16 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
     var both: Faced;
     both.first.there = false;
     both.second.there = false;
-    both.is_tip = false;
+    var deepest = 0.0;
+    var is_tip = false; // whether it is behind three
     var own = vec3<f32>(0.0);
     var own_known = false;
     var others = 0u;
-    // the walls are looked for once the first is known, of those that face more than one
-    for (var turn = 0u; turn < 2u && (turn == 0u || others > 0u); turn++) {
+    // walls are looked for once the first is known, of those that face more than one, and a third once both are
+    for (var turn = 0u; turn < 3u && (turn == 0u || others > 0u); turn++) {
+        if turn == 2u && !(both.second.there && both.first.gap < 0.0 && both.second.gap < 0.0) {
+            break;
+        }
         for (var place = begin; place < end; place++) {
             var triangle = place;
             if hold {
@@ -128,13 +148,17 @@ fn faced(number: u32, point: vec3<f32>) -> Faced {
                     both.first = facing;
                 }
             } else if is_corner(both.first, facing, point) {
-                both.is_tip = both.is_tip
-                    || (both.second.there && dot(facing.normal, both.second.normal) < CORNER);
-                if !both.second.there || is_more_in_way(facing, both.second) {
+                if turn == 2u {
+                    is_tip = is_tip || (facing.gap < 0.0 && dot(facing.normal, both.second.normal) < CORNER);
+                    deepest = min(deepest, facing.gap);
+                } else if !both.second.there || is_more_in_way(facing, both.second) {
                     both.second = facing;
                 }
             }
         }
+    }
+    if is_tip {
+        return where_they_meet(both.first, point, min(both.first.gap, deepest));
     }
     if both.first.there {
         both.first = at_end(number, point, both.first);

@@ -62,15 +62,13 @@ pub struct Faced {
     pub first: Option<Facing>,
     /// Another one.
     pub second: Option<Facing>,
-    /// Whether there is a third, which does not count.
-    pub is_tip: bool,
     /// So much nearer than when the list was made (m) something must come before there is anything to see.
     pub wakes: f64,
 }
 
 impl Faced {
     /// Nothing, which nothing changes.
-    pub const NOTHING: Self = Self { first: None, second: None, is_tip: false, wakes: f64::INFINITY };
+    pub const NOTHING: Self = Self { first: None, second: None, wakes: f64::INFINITY };
 
     /// Whether any normal is the way from a side or a corner.
     #[inline(always)] // with the instructions of whoever asks
@@ -305,6 +303,7 @@ struct Way<'a, R, E> {
 impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
     /// What is in its way: where only one is seen, that it is turned away is all that is asked. Another one is that of
     /// all walls of a corner with the first which is most in its way: before a node several triangles are as near.
+    /// Behind three it is borne by where they meet: of any two others would count from step to step.
     fn finish(mut self) -> Faced {
         let seen = std::mem::take(&mut self.seen);
         let is_there = |facing: &&Facing| !self.is_behind_another(facing, &seen);
@@ -324,8 +323,24 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
         };
         let walls: SmallVec<[(Facing, f64); 4]> = faced.into_iter().filter(is_wall).collect();
         let second = self.most_in_way(walls.iter().copied());
-        let is_third = |second: Facing| walls.iter().any(|(other, _)| other.normal.dot(second.normal) < CORNER);
-        Faced { first: Some(first), second, is_tip: second.is_some_and(is_third), ..Faced::NOTHING }
+        let is_behind = |facing: Facing| facing.gap < 0.0;
+        let is_third = |second: Facing| {
+            walls.iter().any(|&(other, _)| is_behind(other) && other.normal.dot(second.normal) < CORNER)
+        };
+        if is_behind(first) && second.is_some_and(|second| is_behind(second) && is_third(second)) {
+            let deepest = walls.iter().map(|(other, _)| other.gap).fold(first.gap, f64::min);
+            return Faced { first: self.where_they_meet(first, deepest), ..Faced::NOTHING };
+        }
+        Faced { first: Some(first), second, ..Faced::NOTHING }
+    }
+
+    /// The place of a wall that is nearest to it, along the way to there, with the depth (m, negative) that it has in
+    /// one of those that meet there: so that is not another one where it comes before one of them.
+    fn where_they_meet(&self, wall: Facing, deepest: f64) -> Option<Facing> {
+        let Self { surfaces, now, at, .. } = *self;
+        let found = OnTriangle::nearest(at, surfaces.corners(now.places, wall.triangle));
+        let normal = (found.at - at).try_normalize()?;
+        Some(Facing { weights: found.weights, at: found.at, normal, gap: deepest, ..wall })
     }
 
     /// The one of some that is most in its way, each with the cosine between its normal and the point's own.

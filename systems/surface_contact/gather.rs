@@ -262,21 +262,15 @@ pub(super) fn gather<T: Scalar>(
             nodes.meet((contacts, of_bodies), (sight, touch), (point, allowed), batch);
         };
         let other = faced.second.as_ref().map(|second| nodes.sight(contacts, of, second));
-        let in_corner = other.is_some() && !faced.is_tip;
+        let in_corner = other.is_some();
         let (outside, allowed) = match &other {
-            Some(other) if in_corner => {
-                (sight.outside.now.min(other.outside.now), allowed(&[sight.outside, other.outside]))
-            }
-            _ => (sight.outside.now, allowed(&[sight.outside])),
+            Some(other) => (sight.outside.now.min(other.outside.now), allowed(&[sight.outside, other.outside])),
+            None => (sight.outside.now, allowed(&[sight.outside])),
         };
         seen.push(Seen { point, outside, allowed, in_corner });
         meet(sight, allowed);
         if let Some(other) = other {
-            // of a tip's it is not known how the point got there; springs press it out all the same
-            let body = contacts.surface.triangles.bodies[other.facing.triangle as usize];
-            let springs = contacts.meeting(of.body, body).is_some_and(|meeting| meeting.spring.is_some());
-            let let_in = if springs { 0.0 } else { (other.outside.now + in_step.settling).min(0.0) };
-            meet(other, if in_corner { allowed } else { let_in });
+            meet(other, allowed);
         }
     });
     for &Seen { point, outside, allowed, in_corner } in seen.iter().flatten() {
