@@ -59,6 +59,7 @@ mod sutures;
 mod sweeps;
 mod thickness;
 mod ties;
+mod tips;
 mod to_rounding;
 mod turned_friction;
 mod two_grasps;
