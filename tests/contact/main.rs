@@ -61,5 +61,6 @@ mod thickness;
 mod ties;
 mod tips;
 mod to_rounding;
+mod trays;
 mod turned_friction;
 mod two_grasps;
