@@ -192,8 +192,8 @@ fn outside(triangle: u32, point: vec3<f32>, corners: array<vec3<f32>, 3>, found:
         facing.gap = distance;
         return facing;
     }
-    // of a corner that it has sunk into each wall bears it, as above it, along one line; what is farther from there than
-    // insides go is beyond the body
+    // of a corner that it has sunk into each wall bears it, as above it, along one line; what is farther from there
+    // than insides go is beyond the body
     let is_in_body = distance <= bitcast<f32>(surface_faces[8u * triangle + 7u]);
     for (var number = 0u; number < count && is_in_body; number++) {
         if rises_beside(around_part(facing, number), point, found.at, normal, edge) {
