@@ -62,13 +62,16 @@ pub struct Faced {
     pub first: Option<Facing>,
     /// Another one.
     pub second: Option<Facing>,
+    /// Where three walls meet that it is behind, along the way to there: in explicit steps it is borne there, and not by
+    /// walls. In implicit ones the way would be that at the beginning of a long step.
+    pub tip: Option<Facing>,
     /// So much nearer than when the list was made (m) something must come before there is anything to see.
     pub wakes: f64,
 }
 
 impl Faced {
     /// Nothing, which nothing changes.
-    pub const NOTHING: Self = Self { first: None, second: None, wakes: f64::INFINITY };
+    pub const NOTHING: Self = Self { first: None, second: None, tip: None, wakes: f64::INFINITY };
 
     /// Whether any normal is the way from a side or a corner.
     #[inline(always)] // with the instructions of whoever asks
@@ -303,7 +306,7 @@ struct Way<'a, R, E> {
 impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
     /// What is in its way: where only one is seen, that it is turned away is all that is asked. Another one is that of
     /// all walls of a corner with the first which is most in its way: before a node several triangles are as near.
-    /// Behind three it is borne by where they meet: of any two others would count from step to step.
+    /// Behind three there is where they meet: of any two others would count from step to step.
     fn finish(mut self) -> Faced {
         let seen = std::mem::take(&mut self.seen);
         let is_there = |facing: &&Facing| !self.is_behind_another(facing, &seen);
@@ -327,11 +330,10 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Way<'_, R, E> {
         let is_third = |second: Facing| {
             walls.iter().any(|&(other, _)| is_behind(other) && other.normal.dot(second.normal) < CORNER)
         };
-        if is_behind(first) && second.is_some_and(|second| is_behind(second) && is_third(second)) {
-            let deepest = walls.iter().map(|(other, _)| other.gap).fold(first.gap, f64::min);
-            return Faced { first: self.where_they_meet(first, deepest), ..Faced::NOTHING };
-        }
-        Faced { first: Some(first), second, ..Faced::NOTHING }
+        let is_tip = is_behind(first) && second.is_some_and(|second| is_behind(second) && is_third(second));
+        let deepest = walls.iter().map(|(other, _)| other.gap).fold(first.gap, f64::min);
+        let tip = if is_tip { self.where_they_meet(first, deepest) } else { None };
+        Faced { first: Some(first), second, tip, ..Faced::NOTHING }
     }
 
     /// The place of a wall that is nearest to it, along the way to there, with the depth (m, negative) that it has in

@@ -250,7 +250,7 @@ pub(super) fn gather<T: Scalar>(
     face(contacts, reach, cpu, batches.iter_mut().zip(&mut *seen), |contacts, point, faced, (batch, seen)| {
         let at_end = faced.is_beside().then(|| nodes.faced_at_end(contacts, point, faced));
         let faced = at_end.as_ref().unwrap_or(faced);
-        let Some(first) = &faced.first else { return };
+        let Some(first) = faced.tip.as_ref().or(faced.first.as_ref()) else { return };
         let kept = contacts.kept(point);
         let touch = of_bodies[kept.body].kept(kept);
         let of = &contacts.surface.points[point as usize];
@@ -261,7 +261,8 @@ pub(super) fn gather<T: Scalar>(
         let mut meet = |sight: Sight<'_>, allowed: f64| {
             nodes.meet((contacts, of_bodies), (sight, touch), (point, allowed), batch);
         };
-        let other = faced.second.as_ref().map(|second| nodes.sight(contacts, of, second));
+        let second = faced.second.as_ref().filter(|_| faced.tip.is_none());
+        let other = second.map(|second| nodes.sight(contacts, of, second));
         let in_corner = other.is_some();
         let (outside, allowed) = match &other {
             Some(other) => (sight.outside.now.min(other.outside.now), allowed(&[sight.outside, other.outside])),
