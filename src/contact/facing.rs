@@ -62,8 +62,8 @@ pub struct Faced {
     pub first: Option<Facing>,
     /// Another one.
     pub second: Option<Facing>,
-    /// Where three walls meet that it is behind, along the way to there: in explicit steps it is borne there, and not by
-    /// walls. In implicit ones the way would be that at the beginning of a long step.
+    /// Where three walls meet that it is behind, along the way to there: in explicit steps it is borne there, and not
+    /// by walls. In implicit ones the way would be that at the beginning of a long step.
     pub tip: Option<Facing>,
     /// So much nearer than when the list was made (m) something must come before there is anything to see.
     pub wakes: f64,
