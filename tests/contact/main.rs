@@ -64,3 +64,4 @@ mod to_rounding;
 mod trays;
 mod turned_friction;
 mod two_grasps;
+mod written;

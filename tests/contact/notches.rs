@@ -2,7 +2,7 @@
 //! beyond the body, near to the plane of one, is not in it.
 
 use crate::configurations::{configurations, near};
-use crate::grooves::Written;
+use crate::written::Written;
 use glam::DVec3;
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! What is pressed into a tip where three walls of one body meet, or more: it is borne by where they meet.
 
 use crate::configurations::configurations;
-use crate::grooves::Written;
+use crate::written::Written;
 use std::f64::consts::TAU;
 use std::path::Path;
 

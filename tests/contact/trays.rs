@@ -2,7 +2,7 @@
 //! docs/contact.md tells, and a smaller one does.
 
 use crate::configurations::configurations;
-use crate::grooves::Written;
+use crate::written::Written;
 use std::collections::BTreeMap;
 use std::path::Path;
 
