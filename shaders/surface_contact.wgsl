@@ -207,7 +207,7 @@ fn sight(point: u32, place: vec3<f32>, facing: Facing) -> Outside {
 }
 
 // How much deeper (m) a point is than motion tells that was so far outside (m), of one face that it sees, or of two:
-// twin of `allowed` in systems/surface_contact/gather.rs.
+// twin of `allowed` in systems/surface_contact/depth.rs.
 fn deeper_than_expected(
     did: f32, was_in_corner: bool, last: f32, first: Outside, second: Outside, sees_two: bool) -> f32 {
     let lowest = min(first.now, select(first.now, second.now, sees_two));
@@ -229,13 +229,28 @@ fn deeper_than_expected(
     return min(of_second, max(second.now - second.went, 0.0) - of_new);
 }
 
+fn squared_depth(outside: Outside, allowed: f32) -> f32 {
+    let deep = max(allowed - outside.now, 0.0);
+    return deep * deep;
+}
+
+// What is known of a point that may be inside.
+struct Inside {
+    allowed: f32, // how deep it may be (m)
+    settles: f32, // how far that has come out in this step (m)
+    holds: f32, // of the energy that it has taken (J)
+    squares: f32, // of its depths in all that it faces, the sum (m²)
+}
+
 // The contact of a point with something that it faces, if it meets that.
-fn meet(contact: u32, point: u32, place: vec3<f32>, facing: Facing, outside: Outside, allowed: f32, slip: vec3<f32>,
+fn meet(contact: u32, point: u32, place: vec3<f32>, facing: Facing, outside: Outside, inside: Inside, slip: vec3<f32>,
     did: f32) {
     let meets = meeting_with(facing.triangle);
     let edge = meeting_number(meets, EDGE);
-    let gap = max(outside.now - allowed, -OUT * edge);
-    let begun = Begun(facing.normal, gap, outside.now, allowed, SHARES * edge, 0.0, slip);
+    let gap = max(outside.now - inside.allowed, -OUT * edge);
+    let part = squared_depth(outside, inside.allowed) / max(inside.squares, 1e-37);
+    let holds = select(part * inside.holds, UNASKED, surface.relaxed != 0u);
+    let begun = Begun(facing.normal, gap, outside.now, inside.allowed, SHARES * edge, 0.0, slip, holds, inside.settles);
     begin_if_met(contact, meets, parts_of(point, facing, place), begun, did);
 }
 
@@ -271,10 +286,16 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
         let settling = settling_of_step(meeting_with(both.first.triangle));
         let last = surface_touch[at + 5u];
         let deeper = deeper_than_expected(did, was_in_corner, last, first, second, in_corner);
-        allowed = max(min(before + min(deeper, 0.0) + settling, 0.0), min(lowest, 0.0));
-        meet(2u * point, point, place, both.first, first, allowed, slip, did);
+        let stays = max(before + min(deeper, 0.0), min(lowest, 0.0));
+        allowed = max(min(stays + settling, 0.0), min(lowest, 0.0));
+        var squares = squared_depth(first, allowed);
         if both.second.there {
-            meet(2u * point + 1u, point, place, both.second, second, allowed, slip, did);
+            squares += squared_depth(second, allowed);
+        }
+        let inside = Inside(allowed, allowed - stays, surface_touch[at + 6u], squares);
+        meet(2u * point, point, place, both.first, first, inside, slip, did);
+        if both.second.there {
+            meet(2u * point + 1u, point, place, both.second, second, inside, slip, did);
         }
     }
     for (var k = 0u; k < 3u; k++) {
@@ -283,4 +304,5 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     surface_touch[at + 3u] = allowed;
     surface_touch[at + 4u] = select(FREE, FACES, both.first.there) + select(0.0, IN_CORNER, in_corner);
     surface_touch[at + 5u] = lowest;
+    surface_touch[at + 6u] = select(0.0, surface_touch[at + 6u], both.first.there);
 }

@@ -2,6 +2,7 @@
 
 mod body_slices;
 mod crossings;
+mod depth;
 mod device;
 mod ends;
 mod faced;

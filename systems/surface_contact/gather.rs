@@ -1,6 +1,7 @@
 //! The contacts of a step: which points end too near what they face, and where nodes would go.
 
 use super::body_slices::{BodySlices, set_vector, vector_at};
+use super::depth::{Outside, allowed};
 use super::faced::face;
 use super::{Meeting, Surface, SurfaceContacts, crossings, turns};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
@@ -31,25 +32,8 @@ pub(super) struct Seen {
     pub allowed: f64,
     /// Whether it faces two walls.
     pub in_corner: bool,
-}
-
-/// What is the same for all points in a step.
-pub(super) struct InStep {
-    /// How far the fastest node went in the last step (m).
-    pub largest: f64,
-    /// How far points that are inside and may be come out (m).
-    pub settling: f64,
-}
-
-/// How a point is to something that it faces.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Outside {
-    /// How far it is outside now (m).
-    pub now: f64,
-    /// How far outwards it has gone since it was noted how far that was (m).
-    pub since: f64,
-    /// The same in the last step (m).
-    pub went: f64,
+    /// What it holds (J).
+    pub holds: f64,
 }
 
 /// The contacts of a step, and what they act on: nodes that are near something.
@@ -135,6 +119,24 @@ struct Met {
     point: u32,
     of_point: bool,
     outside: f64,
+    /// [`Contact::deep`].
+    deep: f64,
+    /// [`Contact::holds`].
+    holds: Option<f64>,
+    /// [`Contact::settles`].
+    settles: f64,
+}
+
+/// What is known of a point that may be inside.
+#[derive(Clone, Copy)]
+struct Inside {
+    /// How deep it may be (m), as [`allowed`] says.
+    allowed: f64,
+    /// How far that has come out in this step (m).
+    settles: f64,
+    /// What it holds of the energy that it has taken, over the sum of the squares of its depths in all that it faces
+    /// (J/m²); `None` where nobody asks.
+    holds: Option<f64>,
 }
 
 /// Nodes whose steps are foreseen.
@@ -202,36 +204,10 @@ impl Nodes<'_> {
             let mut contact = Contact::new(parts, (normal, gap, step), resists());
             (contact.springs, contact.point) = (spring.is_some(), of.point);
             (contact.of_point, contact.outside) = (of.of_point, of.outside);
+            (contact.deep, contact.holds, contact.settles) = (of.deep, of.holds, of.settles);
             batch.push(contact);
         }
     }
-}
-
-/// How deep a point may be inside (m) of what it faces, one face or the two walls of a corner: as deep as it is found
-/// there and no motion has brought it, by and by less. A point that was not seen before (at the start, laid bare, at a
-/// corner that comes round) is not thrown out in a step. One that touches went outwards as far as it did in the last
-/// step, and not as far as was foreseen: tools may have held what it touches.
-///
-/// Of walls that change places it is not known which was which. So what has faced two, and what has touched nothing, is
-/// taken to have gone as far as any motion may have brought it; and of two, one of which it has touched, that one is
-/// the one of which motion tells more.
-pub(super) fn allowed<T: Scalar>(touch: &[T], faced: &[Outside], in_step: &InStep) -> f64 {
-    let [before, last] = [touch[3].to_f64(), touch[5].to_f64()];
-    let PointState { did, in_corner } = PointState::of(touch[4].to_f64());
-    let lowest = faced.iter().map(|outside| outside.now).fold(f64::INFINITY, f64::min);
-    let unexpected = |outside: &Outside| outside.now - (last + outside.since);
-    let deeper = match (did, faced) {
-        (Did::Free, _) => lowest,
-        (Did::Sticks | Did::Slides, [one]) if !in_corner => unexpected(one),
-        (Did::Sticks | Did::Slides, [one, other]) if !in_corner => {
-            let is_one = unexpected(one).abs() <= unexpected(other).abs();
-            let (old, new) = if is_one { (one, other) } else { (other, one) };
-            // behind the line where both meet it is behind the other as far as in the one, or less
-            unexpected(old).min((new.now - new.went) - (old.now - old.went).min(0.0))
-        }
-        _ => lowest - (last - 2.0 * in_step.largest),
-    };
-    (before + deeper.min(0.0) + in_step.settling).min(0.0).max(lowest.min(0.0))
 }
 
 /// Finds what points face, and the contacts of a step, of nodes whose steps are foreseen; notes what points face, and
@@ -256,30 +232,37 @@ pub(super) fn gather<T: Scalar>(
         let of = &contacts.surface.points[point as usize];
         let in_step = contacts.in_step(of, first, clock);
         let sight = nodes.sight(contacts, of, first);
-        // as it is kept
-        let allowed = |faced: &[Outside]| T::from_f64(allowed(touch, faced, &in_step)).to_f64();
-        let mut meet = |sight: Sight<'_>, allowed: f64| {
-            nodes.meet((contacts, of_bodies), (sight, touch), (point, allowed), batch);
-        };
         let second = faced.second.as_ref().filter(|_| faced.tip.is_none());
         let other = second.map(|second| nodes.sight(contacts, of, second));
         let in_corner = other.is_some();
-        let (outside, allowed) = match &other {
-            Some(other) => (sight.outside.now.min(other.outside.now), allowed(&[sight.outside, other.outside])),
-            None => (sight.outside.now, allowed(&[sight.outside])),
+        let (outside, (allowed, settles)) = match &other {
+            Some(other) => {
+                (sight.outside.now.min(other.outside.now), allowed(touch, &[sight.outside, other.outside], &in_step))
+            }
+            None => (sight.outside.now, allowed(touch, &[sight.outside], &in_step)),
         };
-        seen.push(Seen { point, outside, allowed, in_corner });
-        meet(sight, allowed);
+        // as it is kept
+        let allowed = T::from_f64(allowed).to_f64();
+        let squared = |of: &Sight<'_>| (allowed - of.outside.now).max(0.0).powi(2);
+        let squares = squared(&sight) + other.as_ref().map_or(0.0, squared);
+        let holds = touch[6].to_f64();
+        seen.push(Seen { point, outside, allowed, in_corner, holds });
+        let held = if squares > 0.0 { holds / squares } else { 0.0 };
+        let inside = Inside { allowed, settles, holds: clock.relaxation.is_none().then_some(held) };
+        let mut meet = |sight: Sight<'_>| {
+            nodes.meet((contacts, of_bodies), (sight, touch), (point, inside), batch);
+        };
+        meet(sight);
         if let Some(other) = other {
-            meet(other, allowed);
+            meet(other);
         }
     });
-    for &Seen { point, outside, allowed, in_corner } in seen.iter().flatten() {
+    for &Seen { point, outside, allowed, in_corner, holds } in seen.iter().flatten() {
         let kept = contacts.kept(point);
         let touch = bodies[kept.body].kept_mut(kept);
         set_vector(touch, 0, DVec3::ZERO);
         let state = PointState { did: Did::Faces, in_corner }.number();
-        touch[3..6].iter_mut().zip([allowed, state, outside]).for_each(|(of, number)| *of = T::from_f64(number));
+        touch[3..7].iter_mut().zip([allowed, state, outside, holds]).for_each(|(of, number)| *of = T::from_f64(number));
         facing.push(point);
     }
     crossings::find(contacts, reach);
@@ -293,7 +276,8 @@ pub(super) fn gather<T: Scalar>(
         let gap = outside.max(-meeting.settling(clock));
         let [of_one, of_other] = &crossing.weights;
         // nodes are the first of the points
-        let met = Met { point: one.nodes[0], of_point: false, outside };
+        let (point, deep) = (one.nodes[0], -gap);
+        let met = Met { point, of_point: false, outside, deep, holds: None, settles: 0.0 };
         nodes.add(
             last,
             nodes.between([(&one.nodes, of_one), (&other.nodes, of_other)]),
@@ -327,7 +311,7 @@ impl Nodes<'_> {
         &self,
         (contacts, bodies): (&SurfaceContacts, &[BodySlices<'_, T>]),
         (Sight { facing, parts, outside }, touch): (Sight<'_>, &[T]),
-        (number, allowed): (u32, f64),
+        (number, inside): (u32, Inside),
         batch: &mut Vec<Contact>,
     ) {
         let surface = &contacts.surface;
@@ -348,17 +332,19 @@ impl Nodes<'_> {
             (friction[usize::from(!is_held)], vector_at(touch, 0) - turned)
         };
         let within = if point.triangle.is_some() { SHARES * edge } else { 0.0 };
-        let gap = (outside.now - allowed).max(-OUT * edge);
+        let Inside { allowed, settles, holds } = inside;
+        let outside_allowed = outside.now - allowed;
+        let gap = outside_allowed.max(-OUT * edge);
+        let deep = -outside_allowed;
+        // a share of it, by how deep it is in this of all
+        let holds = holds.map(|holds| holds * deep.max(0.0).powi(2));
         self.add(
             batch,
             parts,
             (facing.normal, gap),
             resists,
-            (spring, outside.now - allowed, within),
-            Met { point: number, of_point: true, outside: outside.now },
+            (spring, outside_allowed, within),
+            Met { point: number, of_point: true, outside: outside.now, deep, holds, settles },
         );
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,8 +1,9 @@
 //! The forces that keep points outside of what they face.
 
 use super::body_slices::{BodySlices, Kept, set_vector, vector};
+use super::depth::InStep;
 use super::faced::tasks;
-use super::gather::{Gathered, InStep, gather};
+use super::gather::{Gathered, gather};
 use super::{Meeting, Surface, SurfaceContacts};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
@@ -108,6 +109,7 @@ pub(super) fn forget<T: Scalar>(contacts: &mut SurfaceContacts, now: &[u32], bod
         touch[3] = T::default();
         touch[4] = T::from_f64(PointState::default().number());
         touch[5] = T::default();
+        touch[6] = T::default();
     }
     contacts.surface.touching.clear();
     contacts.surface.touching.extend_from_slice(now);
@@ -166,8 +168,12 @@ fn note_touches<T: Scalar>(
         if contact.of_point {
             note_touch(touch, contact);
         }
+        if let Some(holds) = contact.holds {
+            let before = contact.normal.dot(contact.parts.step(&set.earlier));
+            touch[6] = T::from_f64(touch[6].to_f64() + contact.holds_after(before) - holds);
+        }
         if counts_ways {
-            touch[6] = T::from_f64(touch[6].to_f64() + contact.slid);
+            touch[7] = T::from_f64(touch[7].to_f64() + contact.slid);
         }
     }
     contacts.surface.figures.deepest = deepest;
@@ -198,7 +204,7 @@ fn count_work<T: Scalar>(
         // along axes that are told the step to come was taken for the last one, too
         let ahead = vector(of_body.step, row) - of_body.last_step(row);
         let work = work - 0.5 * set.forces[place].truncate().dot(ahead);
-        let taken = &mut of_body.touch[MEETING_NUMBERS * row + 7];
+        let taken = &mut of_body.touch[MEETING_NUMBERS * row + 8];
         *taken = T::from_f64(taken.to_f64() - work_factor * work);
     }
 }
