@@ -14,6 +14,9 @@ use glam::DVec3;
 /// normal is above this (60°): of the faces around an edge those that are turned to what touches.
 const PRESSED: f64 = 0.5;
 
+/// Forces are rounding that are no larger than this, of the largest on the body: f32 knows seven digits.
+const ROUNDING: f64 = 1e-6;
+
 /// What touches each node of a body (N), in the author's order: other bodies, itself, tools.
 ///
 /// # Errors
@@ -100,12 +103,14 @@ fn tractions(forces: Vec<DVec3>, surface: &[FacetNow]) -> Vec<DVec3> {
     forces.into_iter().zip(areas).map(over).collect()
 }
 
-/// Of each node, from the forces on nodes, the area that its force presses on (m²), along the mean normal of that.
+/// Of each node, from the forces on nodes, the area that its force presses on (m²), along the mean normal of that: none
+/// of what is no more than rounding of the largest force.
 fn pressed(forces: &[DVec3], surface: &[FacetNow]) -> Vec<(f64, DVec3)> {
     let mut areas = vec![(0.0, DVec3::ZERO); forces.len()];
+    let least = ROUNDING * forces.iter().map(|force| force.length()).fold(0.0, f64::max);
     for (facet, &node) in surface.iter().flat_map(|facet| facet.nodes.iter().map(move |node| (facet, node))) {
         let (force, size) = (forces[node], facet.share.length());
-        if -force.dot(facet.share) > PRESSED * force.length() * size {
+        if force.length() > least && -force.dot(facet.share) > PRESSED * force.length() * size {
             areas[node].0 += size;
             areas[node].1 += facet.share;
         }

@@ -1,7 +1,7 @@
 //! `--set path=value`: puts a value into the text of a scene, in the place of the one that stands there or as a new
 //! field.
 
-use super::check::wants_text;
+use super::check::{wants_maps, wants_text};
 use super::diagnostic::Diagnostic;
 use super::limits::SET_BYTES;
 use super::parts::merged;
@@ -44,6 +44,7 @@ pub fn apply(source: &mut Source, view: &View, (number, argument): (usize, &str)
     })?;
     // texts are counted from the scene's own file on
     let number = number + 1;
+    let slot = slot.with_maps(source);
     let put = |source: &Source, parts: &[(&str, Origin)]| {
         let mut source = source.clone();
         let span = slot.put(&mut source, (number, 0), parts);
@@ -88,7 +89,7 @@ pub fn put(
     if way.0.is_empty() {
         return Err(("a path is missing".to_string(), Vec::new()));
     }
-    view.slot(&way, path)?.put(source, from, value);
+    view.slot(&way, path)?.with_maps(source).put(source, from, value);
     Ok(())
 }
 
@@ -132,9 +133,10 @@ impl View {
 struct Slot<'a> {
     /// What it replaces; empty where something new goes in.
     span: Span,
-    /// Names that come before it, each with the place of the path it came from, and how the last of them is written.
+    /// Names that come before it, each with the place of the path it came from.
     new: Vec<(&'a str, usize)>,
-    in_map: bool,
+    /// Of which of these what holds it is a map.
+    in_maps: Vec<bool>,
 }
 
 impl<'a> Slot<'a> {
@@ -149,7 +151,7 @@ impl<'a> Slot<'a> {
                     vec![format!("what is in it can be changed, or what a part brings: `parts.NAME.content.{way}`")],
                 ));
             }
-            Ok(node) => return Ok(Self { span: node.span.clone(), new: Vec::new(), in_map: false }),
+            Ok(node) => return Ok(Self { span: node.span.clone(), new: Vec::new(), in_maps: Vec::new() }),
             Err(lost) => lost,
         };
         let holder =
@@ -221,7 +223,37 @@ impl<'a> Slot<'a> {
             _ => None,
         };
         let open = first.unwrap_or(holder.span.end - 1);
-        Ok(Self { span: open..open, new, in_map: matches!(holder.kind, Kind::Map(_)) })
+        let mut in_maps = vec![false; new.len()];
+        in_maps[0] = matches!(holder.kind, Kind::Map(_));
+        Ok(Self { span: open..open, new, in_maps })
+    }
+
+    /// With maps where the scene wants such, of names that are not there yet.
+    fn with_maps(mut self, source: &Source) -> Self {
+        // what is inside is looked at where its holder is right
+        for _ in 1..self.new.len() {
+            let mut with = source.clone();
+            self.put(&mut with, (0, 0), &[("x", Origin::of(0, 0))]);
+            let wanted = wants_maps::<Scene>(&with);
+            let mut at = self.span.start;
+            for i in 0..self.new.len() {
+                // the bracket before a name holds it
+                self.in_maps[i] |= i > 0 && wanted.iter().any(|span| span.start == at);
+                at += self.before(i).iter().map(|text| text.len()).sum::<usize>();
+            }
+        }
+        self
+    }
+
+    /// What stands before the next name, or the value.
+    fn before(&self, i: usize) -> [&str; 4] {
+        let bracket = match (i, self.in_maps[i]) {
+            (0, _) => "",
+            (_, true) => "{",
+            (_, false) => "(",
+        };
+        let [quote, colon] = if self.in_maps[i] { ["\"", "\": "] } else { ["", ": "] };
+        [bracket, quote, self.new[i].0, colon]
     }
 
     /// Puts the value in and tells where it now stands.
@@ -230,16 +262,16 @@ impl<'a> Slot<'a> {
         let glue = |at: usize| Origin::put_in(text, from + at);
         let span = self.span.clone();
         if let Some((_, at)) = self.new.last() {
-            for (i, (name, at)) in self.new.iter().enumerate() {
-                let quoted = self.in_map && i == 0;
-                parts.extend([(if i > 0 { "(" } else { "" }, glue(*at)), (if quoted { "\"" } else { "" }, glue(*at))]);
-                parts.push((name, Origin::of(text, from + at)));
-                parts.push((if quoted { "\": " } else { ": " }, glue(*at)));
+            for (i, (_, at)) in self.new.iter().enumerate() {
+                let [bracket, quote, name, colon] = self.before(i);
+                parts.extend([(bracket, glue(*at)), (quote, glue(*at)), (name, Origin::of(text, from + at))]);
+                parts.push((colon, glue(*at)));
             }
             let before: usize = parts.iter().map(|(text, _)| text.len()).sum();
             let length: usize = value.iter().map(|(text, _)| text.len()).sum();
             parts.extend(value.iter().cloned());
-            parts.extend(self.new.iter().skip(1).map(|_| (")", glue(*at))));
+            let close = |in_map: &bool| (if *in_map { "}" } else { ")" }, glue(*at));
+            parts.extend(self.in_maps.iter().skip(1).rev().map(close));
             parts.push((", ", glue(*at)));
             source.replace(span, &parts);
             let start = self.span.start + before;

@@ -37,11 +37,18 @@ pub fn wants_text<T: DeserializeOwned>(source: &Source, span: &Span) -> bool {
     read::<T>(&tree.root, source.text()).1.texts_wanted.take().contains(span)
 }
 
+/// Where maps must be and something else is.
+pub fn wants_maps<T: DeserializeOwned>(source: &Source) -> Vec<Span> {
+    let tree = parse(source.text());
+    read::<T>(&tree.root, source.text()).1.maps_wanted.take()
+}
+
 /// Reads the tree as a `T`, as often as it takes to learn which fields are required.
 fn read<'a, T: DeserializeOwned>(root: &'a Node, text: &'a str) -> (Option<T>, About<'a>) {
     let mut about = About {
         text,
         texts_wanted: RefCell::default(),
+        maps_wanted: RefCell::default(),
         said_before: RefCell::new(Diagnostic::error(None, "")),
         found: RefCell::default(),
         required: BTreeSet::new(),
@@ -65,6 +72,8 @@ struct About<'a> {
     text: &'a str,
     /// Where something else stands than the text that must stand there.
     texts_wanted: RefCell<Vec<Span>>,
+    /// The same of maps.
+    maps_wanted: RefCell<Vec<Span>>,
     /// Takes what would be said about a value the parser has complained about.
     said_before: RefCell<Diagnostic>,
     found: RefCell<Vec<Diagnostic>>,

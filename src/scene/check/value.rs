@@ -145,6 +145,7 @@ impl<'de> Deserializer<'de> for Value<'_> {
         match &self.node.kind {
             Kind::Map(entries) => visitor.visit_map(Entries::new(self, entries)),
             _ => {
+                self.about.maps_wanted.borrow_mut().push(self.node.span.clone());
                 self.wrong("names and values in curly brackets: { \"name\": value }");
                 visitor.visit_map(Entries::new(self, &[]))
             }
