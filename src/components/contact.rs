@@ -13,8 +13,8 @@ columns! {
     /// elastically (m, a vector); how deep it may be inside (m, 0 or negative); a [`PointState`] of the last step; how
     /// far it was outside of what it faced before the step, after it in implicit steps, of two the less (m); what it
     /// holds of the energy that it has taken while it is inside, where the kinematic law acts (J); since the start the
-    /// length it has slid (m), and what contact has taken of the node's energy (J), also where it is the faces around it
-    /// that are touched. Exists with [`ContactForce`].
+    /// length it has slid (m), and what contact has taken of the node's energy (J), also where it is the faces around
+    /// it that are touched. Exists with [`ContactForce`].
     SurfaceTouch(Reals) = "surface_touch", State of Touch, Nodes(MEETING_NUMBERS);
     /// The same of each point of faces, but that energy is counted at nodes alone: those of a facet after another, as
     /// the body's surface has them, or where [`FacePlaces`] says, and as [`face_points`](crate::contact::face_points)

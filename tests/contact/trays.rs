@@ -20,8 +20,8 @@ fn write_tray(path: &Path) {
     mesh.write(path);
 }
 
-/// A cube of so many cells along each side, of a law, off the walls (m), in a tray that lies in a folder, pulled so; with
-/// a contact's law.
+/// A cube of so many cells along each side, of a law, off the walls (m), in a tray that lies in a folder, pulled so;
+/// with a contact's law.
 fn cube((cells, elastic, damping, off): (u32, &str, u32, f64), (steps, pull, law): (&str, &str, &str)) -> String {
     format!(
         "(duration: 0.6, {steps} bodies: {{
@@ -35,8 +35,8 @@ fn cube((cells, elastic, damping, off): (u32, &str, u32, f64), (steps, pull, law
     )
 }
 
-/// Where walls share the masses of nodes with the floor and let go by turns, contact takes energy and makes none: at the
-/// default step cubes were thrown about, and ended the run by energy from nothing.
+/// Where walls share the masses of nodes with the floor and let go by turns, contact takes energy and makes none: at
+/// the default step cubes were thrown about, and ended the run by energy from nothing.
 #[test]
 fn cubes_are_not_thrown_about_in_trays() {
     let folder = tempfile::tempdir().unwrap();
