@@ -18,6 +18,7 @@ struct Begun {
     slip: vec3<f32>,
     holds: f32, // of the energy that it has taken (J)
     settles: f32, // how far it is let out in this step, whatever it holds (m)
+    beside: f32, // what the other wall of a corner leaves of how far it yields alone
 }
 
 fn meeting(point: u32, face: u32) -> u32 {
@@ -87,6 +88,7 @@ fn begin(contact: u32, meets: u32, parts: Parts, begun: Begun) {
     set_number(contact, HOLDS, begun.holds);
     set_number(contact, DEEP, begun.allowed - begun.outside);
     set_number(contact, SETTLES, begun.settles);
+    set_number(contact, BESIDE, begun.beside);
     let at = CONTACT_WORDS * contact;
     surface_contacts[at + SLIDING] = 1u; // what nothing holds
     for (var part = 0u; part < PARTS; part++) {

@@ -10,7 +10,7 @@ fn limit(contact: u32, step_outwards: f32, yields: f32, alone: f32) {
         return;
     }
     let stiffness = 2.0 * max(holds, 0.0);
-    let force = stiffness * (deep - step_outwards) / max(deep * deep + stiffness * alone, 1e-37);
+    let force = stiffness * (deep - step_outwards) / max(deep * deep + stiffness * number(contact, BESIDE) * alone, 1e-37);
     let out = max(max(yields * force + step_outwards, number(contact, SETTLES)), 0.0);
     set_number(contact, GAP, max(number(contact, GAP), -out));
     // no limit to later sweeps

@@ -23,15 +23,12 @@ fn note(contact: u32, at: u32, of_point: bool) {
         surface_touch[at + 2u] = slip.z;
         surface_touch[at + 4u] = in_corner + select(STICKS, SLIDES, slides);
     }
-    let holds = number(contact, HOLDS);
-    if holds < UNASKED {
-        let steps = vec2<f32>(dot(normal, relative(contact, LAST)), dot(normal, after));
-        let spring = 0.5 * pressing * max(number(contact, DEEP) - steps.y, 0.0);
-        let now = min(max(holds - 0.5 * pressing * (steps.x + steps.y), 0.5 * spring), 2.0 * spring);
-        surface_touch[at + 6u] += now - holds;
+    if number(contact, HOLDS) < UNASKED {
+        surface_touch[at + 6u] -= 0.5 * pressing * dot(normal, relative(contact, LAST));
+        surface_touch[at + 7u] += pressing;
     }
     if surface.relaxed == 0u && slides {
-        surface_touch[at + 7u] += length(along_surface(after, normal));
+        surface_touch[at + 8u] += length(along_surface(after, normal));
     }
 }
 

@@ -1,7 +1,7 @@
 //! The contacts of a step: which points end too near what they face, and where nodes would go.
 
 use super::body_slices::{BodySlices, set_vector, vector_at};
-use super::depth::{Outside, allowed};
+use super::depth::{Outside, allowed, holds};
 use super::faced::face;
 use super::{Meeting, Surface, SurfaceContacts, crossings, turns};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
@@ -10,6 +10,7 @@ use crate::contact::{Beginning, Contact, ContactSet, Faced, Facing, Parts, Point
 use crate::math::Scalar;
 use crate::systems::tool_contact::STILL;
 use glam::{DVec3, DVec4};
+use smallvec::SmallVec;
 
 /// How far a point that is inside comes out in a step at most, in the smaller edges of both bodies: elements of neither
 /// are to turn over.
@@ -125,6 +126,8 @@ struct Met {
     holds: Option<f64>,
     /// [`Contact::settles`].
     settles: f64,
+    /// [`Contact::beside`].
+    beside: f64,
 }
 
 /// What is known of a point that may be inside.
@@ -137,6 +140,8 @@ struct Inside {
     /// What it holds of the energy that it has taken, over the sum of the squares of its depths in all that it faces
     /// (J/m²); `None` where nobody asks.
     holds: Option<f64>,
+    /// [`Contact::beside`].
+    beside: f64,
 }
 
 /// Nodes whose steps are foreseen.
@@ -204,7 +209,8 @@ impl Nodes<'_> {
             let mut contact = Contact::new(parts, (normal, gap, step), resists());
             (contact.springs, contact.point) = (spring.is_some(), of.point);
             (contact.of_point, contact.outside) = (of.of_point, of.outside);
-            (contact.deep, contact.holds, contact.settles) = (of.deep, of.holds, of.settles);
+            (contact.deep, contact.holds) = (of.deep, of.holds);
+            (contact.settles, contact.beside) = (of.settles, of.beside);
             batch.push(contact);
         }
     }
@@ -235,20 +241,19 @@ pub(super) fn gather<T: Scalar>(
         let second = faced.second.as_ref().filter(|_| faced.tip.is_none());
         let other = second.map(|second| nodes.sight(contacts, of, second));
         let in_corner = other.is_some();
-        let (outside, (allowed, settles)) = match &other {
-            Some(other) => {
-                (sight.outside.now.min(other.outside.now), allowed(touch, &[sight.outside, other.outside], &in_step))
-            }
-            None => (sight.outside.now, allowed(touch, &[sight.outside], &in_step)),
-        };
+        let faced: SmallVec<[Outside; 2]> =
+            [Some(&sight), other.as_ref()].into_iter().flatten().map(|sight| sight.outside).collect();
+        let (allowed, settles) = allowed(touch, &faced, &in_step);
         // as it is kept
         let allowed = T::from_f64(allowed).to_f64();
-        let squared = |of: &Sight<'_>| (allowed - of.outside.now).max(0.0).powi(2);
-        let squares = squared(&sight) + other.as_ref().map_or(0.0, squared);
-        let holds = touch[6].to_f64();
+        let holds = holds(touch, &faced, allowed);
+        let outside = faced.iter().map(|outside| outside.now).fold(f64::INFINITY, f64::min);
         seen.push(Seen { point, outside, allowed, in_corner, holds });
+        let squares: f64 = faced.iter().map(|outside| (allowed - outside.now).max(0.0).powi(2)).sum();
         let held = if squares > 0.0 { holds / squares } else { 0.0 };
-        let inside = Inside { allowed, settles, holds: clock.relaxation.is_none().then_some(held) };
+        // walls that meet at less than 90° push into each other
+        let beside = other.as_ref().map_or(1.0, |other| 1.0 + sight.facing.normal.dot(other.facing.normal).min(0.0));
+        let inside = Inside { allowed, settles, holds: clock.relaxation.is_none().then_some(held), beside };
         let mut meet = |sight: Sight<'_>| {
             nodes.meet((contacts, of_bodies), (sight, touch), (point, inside), batch);
         };
@@ -262,7 +267,10 @@ pub(super) fn gather<T: Scalar>(
         let touch = bodies[kept.body].kept_mut(kept);
         set_vector(touch, 0, DVec3::ZERO);
         let state = PointState { did: Did::Faces, in_corner }.number();
-        touch[3..7].iter_mut().zip([allowed, state, outside, holds]).for_each(|(of, number)| *of = T::from_f64(number));
+        touch[3..8]
+            .iter_mut()
+            .zip([allowed, state, outside, holds, 0.0])
+            .for_each(|(of, number)| *of = T::from_f64(number));
         facing.push(point);
     }
     crossings::find(contacts, reach);
@@ -277,7 +285,7 @@ pub(super) fn gather<T: Scalar>(
         let [of_one, of_other] = &crossing.weights;
         // nodes are the first of the points
         let (point, deep) = (one.nodes[0], -gap);
-        let met = Met { point, of_point: false, outside, deep, holds: None, settles: 0.0 };
+        let met = Met { point, of_point: false, outside, deep, holds: None, settles: 0.0, beside: 1.0 };
         nodes.add(
             last,
             nodes.between([(&one.nodes, of_one), (&other.nodes, of_other)]),
@@ -332,7 +340,7 @@ impl Nodes<'_> {
             (friction[usize::from(!is_held)], vector_at(touch, 0) - turned)
         };
         let within = if point.triangle.is_some() { SHARES * edge } else { 0.0 };
-        let Inside { allowed, settles, holds } = inside;
+        let Inside { allowed, settles, holds, beside } = inside;
         let outside_allowed = outside.now - allowed;
         let gap = outside_allowed.max(-OUT * edge);
         let deep = -outside_allowed;
@@ -344,7 +352,7 @@ impl Nodes<'_> {
             (facing.normal, gap),
             resists,
             (spring, outside_allowed, within),
-            Met { point: number, of_point: true, outside: outside.now, deep, holds, settles },
+            Met { point: number, of_point: true, outside: outside.now, deep, holds, settles, beside },
         );
     }
 }

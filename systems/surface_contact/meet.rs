@@ -110,6 +110,7 @@ pub(super) fn forget<T: Scalar>(contacts: &mut SurfaceContacts, now: &[u32], bod
         touch[4] = T::from_f64(PointState::default().number());
         touch[5] = T::default();
         touch[6] = T::default();
+        touch[7] = T::default();
     }
     contacts.surface.touching.clear();
     contacts.surface.touching.extend_from_slice(now);
@@ -168,12 +169,13 @@ fn note_touches<T: Scalar>(
         if contact.of_point {
             note_touch(touch, contact);
         }
-        if let Some(holds) = contact.holds {
+        if contact.holds.is_some() {
             let before = contact.normal.dot(contact.parts.step(&set.earlier));
-            touch[6] = T::from_f64(touch[6].to_f64() + contact.holds_after(before) - holds);
+            touch[6] = T::from_f64(touch[6].to_f64() - 0.5 * contact.pressing * before);
+            touch[7] = T::from_f64(touch[7].to_f64() + contact.pressing);
         }
         if counts_ways {
-            touch[7] = T::from_f64(touch[7].to_f64() + contact.slid);
+            touch[8] = T::from_f64(touch[8].to_f64() + contact.slid);
         }
     }
     contacts.surface.figures.deepest = deepest;
@@ -204,7 +206,7 @@ fn count_work<T: Scalar>(
         // along axes that are told the step to come was taken for the last one, too
         let ahead = vector(of_body.step, row) - of_body.last_step(row);
         let work = work - 0.5 * set.forces[place].truncate().dot(ahead);
-        let taken = &mut of_body.touch[MEETING_NUMBERS * row + 8];
+        let taken = &mut of_body.touch[MEETING_NUMBERS * row + 9];
         *taken = T::from_f64(taken.to_f64() - work_factor * work);
     }
 }

@@ -36,6 +36,9 @@ pub struct Contact {
     pub deep: f64,
     /// How far it is let out in this step (m), whatever it holds.
     pub settles: f64,
+    /// What a force of the other wall of a corner leaves of how far it yields alone: less than 1 where that pushes
+    /// back.
+    pub beside: f64,
     /// What whoever made it knows of it: the number of the point, whether that meets a face, and not an edge another,
     /// and how far it was outside (m).
     pub point: u32,
@@ -69,6 +72,7 @@ impl Contact {
             holds: None,
             deep: -gap,
             settles: 0.0,
+            beside: 1.0,
             point: 0,
             of_point: false,
             outside: gap,
@@ -105,21 +109,11 @@ impl Contact {
         let (Some(holds), true) = (self.holds, self.deep > 0.0 && !self.springs) else { return };
         let (stiffness, step) = (2.0 * holds.max(0.0), self.normal.dot(self.step));
         // times the depth squared
-        let force = stiffness * (self.deep - step) / (self.deep * self.deep + stiffness * self.yields_alone);
+        let force =
+            stiffness * (self.deep - step) / (self.deep * self.deep + stiffness * self.beside * self.yields_alone);
         // that is nothing of no number
         let out = (self.yields * force + step).max(self.settles).max(0.0);
         self.gap = self.gap.max(-out);
-    }
-
-    /// What it holds after the step (J), when forces are known and how far outwards the point went in the step before
-    /// (m): what it held and has taken, but no less than half and no more than twice what a spring of its force holds
-    /// that is so deep inside.
-    #[inline(always)]
-    pub fn holds_after(&self, before: f64) -> f64 {
-        let after = self.normal.dot(self.step);
-        let taken = -0.5 * self.pressing * (before + after);
-        let spring = 0.5 * self.pressing * (self.deep - after).max(0.0);
-        (self.holds.unwrap_or(0.0) + taken).max(0.5 * spring).min(2.0 * spring)
     }
 
     /// Corrects the normal force by a step of the point against the face (m), and gives by how much (N).
