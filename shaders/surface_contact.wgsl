@@ -229,30 +229,11 @@ fn deeper_than_expected(
     return min(of_second, max(second.now - second.went, 0.0) - of_new);
 }
 
-fn squared_depth(outside: Outside, allowed: f32) -> f32 {
-    let deep = max(allowed - outside.now, 0.0);
-    return deep * deep;
-}
-
-// What a point holds (J) of the energy that contact has taken there, from what is kept of that and of its force; twin
-// of `holds` in systems/surface_contact/depth.rs.
-fn held(kept: vec2<f32>, first: Outside, second: Outside, sees_two: bool, allowed: f32) -> f32 {
-    let deep = vec2<f32>(max(allowed - first.now, 0.0), select(0.0, max(allowed - second.now, 0.0), sees_two));
-    let depths = deep.x + deep.y;
-    if depths <= 0.0 {
-        return max(kept.x - 0.5 * kept.y * first.went, 0.0);
-    }
-    let now = kept.x - 0.5 * kept.y * dot(deep, vec2<f32>(first.went, second.went)) / depths;
-    let spring = 0.5 * kept.y * dot(deep, deep) / depths;
-    return select(now, min(max(now, 0.5 * spring), 2.0 * spring), kept.y > 0.0);
-}
-
 // What is known of a point that may be inside.
 struct Inside {
     allowed: f32, // how deep it may be (m)
     settles: f32, // how far that has come out in this step (m)
-    holds: f32, // of the energy that it has taken (J)
-    squares: f32, // of its depths in all that it faces, the sum (m²)
+    stiffness: f32, // of the spring that has pressed it (N/m)
     beside: f32, // what the other wall of a corner leaves of how far it yields alone
 }
 
@@ -262,10 +243,9 @@ fn meet(contact: u32, point: u32, place: vec3<f32>, facing: Facing, outside: Out
     let meets = meeting_with(facing.triangle);
     let edge = meeting_number(meets, EDGE);
     let gap = max(outside.now - inside.allowed, -OUT * edge);
-    let part = squared_depth(outside, inside.allowed) / max(inside.squares, 1e-37);
-    let holds = select(part * inside.holds, UNASKED, surface.relaxed != 0u);
-    let begun = Begun(facing.normal, gap, outside.now, inside.allowed, SHARES * edge, 0.0, slip, holds, inside.settles,
-        inside.beside);
+    // what goes in takes energy, and may be let out as far
+    let begun = Begun(facing.normal, gap, outside.now, inside.allowed, SHARES * edge, 0.0, slip, inside.stiffness,
+        max(inside.settles, -outside.went), inside.beside);
     begin_if_met(contact, meets, parts_of(point, facing, place), begun, did);
 }
 
@@ -288,7 +268,6 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     let in_corner = both.first.there && both.second.there;
     var allowed = 0.0;
     var lowest = 0.0;
-    var holds = 0.0;
     if both.first.there {
         let first = sight(point, place, both.first);
         lowest = first.now;
@@ -304,15 +283,15 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
         let deeper = deeper_than_expected(did, was_in_corner, last, first, second, in_corner);
         let stays = max(before + min(deeper, 0.0), min(lowest, 0.0));
         allowed = max(min(stays + settling, 0.0), min(lowest, 0.0));
-        var squares = squared_depth(first, allowed);
+        var deep = max(allowed - first.now, 0.0);
         var beside = 1.0;
         if both.second.there {
-            squares += squared_depth(second, allowed);
+            deep += max(allowed - second.now, 0.0);
             // walls that meet at less than 90° push into each other
             beside += min(dot(both.first.normal, both.second.normal), 0.0);
         }
-        holds = held(vec2<f32>(surface_touch[at + 6u], surface_touch[at + 7u]), first, second, both.second.there, allowed);
-        let inside = Inside(allowed, allowed - stays, holds, squares, beside);
+        let spring = select(0.0, surface_touch[at + 6u] / max(deep, 1e-37), deep > 0.0);
+        let inside = Inside(allowed, allowed - stays, select(spring, UNASKED, surface.relaxed != 0u), beside);
         meet(2u * point, point, place, both.first, first, inside, slip, did);
         if both.second.there {
             meet(2u * point + 1u, point, place, both.second, second, inside, slip, did);
@@ -324,6 +303,7 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     surface_touch[at + 3u] = allowed;
     surface_touch[at + 4u] = select(FREE, FACES, both.first.there) + select(0.0, IN_CORNER, in_corner);
     surface_touch[at + 5u] = lowest;
-    surface_touch[at + 6u] = holds;
-    surface_touch[at + 7u] = 0.0;
+    if !both.first.there {
+        surface_touch[at + 6u] = 0.0;
+    }
 }

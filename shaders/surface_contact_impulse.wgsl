@@ -2,19 +2,19 @@
 // surface_contact_share.wgsl; surface_contact_apply.wgsl gives them to nodes.
 @group(0) @binding(0) var<storage, read> surface_shares: array<f32>;
 
-// Lets a contact come out no harder than the spring would that holds what it holds; in the first sweep.
+// Lets a point that is inside come out no harder than the spring would that the contact has been so far; in the first
+// sweep.
 fn limit(contact: u32, step_outwards: f32, yields: f32, alone: f32) {
-    let holds = number(contact, HOLDS);
-    let deep = number(contact, DEEP);
-    if holds >= UNASKED || !(deep > 0.0) {
+    let stiffness = number(contact, STIFFNESS);
+    let gap = number(contact, GAP);
+    if stiffness >= UNASKED || !(gap < 0.0) {
         return;
     }
-    let stiffness = 2.0 * max(holds, 0.0);
-    let force = stiffness * (deep - step_outwards) / max(deep * deep + stiffness * number(contact, BESIDE) * alone, 1e-37);
-    let out = max(max(yields * force + step_outwards, number(contact, SETTLES)), 0.0);
-    set_number(contact, GAP, max(number(contact, GAP), -out));
+    let force = stiffness * (-gap - step_outwards) / (1.0 + stiffness * number(contact, BESIDE) * alone);
+    let out = max(max(yields * force + step_outwards, number(contact, LETS_OUT)), 0.0);
+    set_number(contact, GAP, max(gap, -out));
     // no limit to later sweeps
-    set_number(contact, SETTLES, UNASKED);
+    set_number(contact, STIFFNESS, UNASKED);
 }
 
 @compute @workgroup_size(64)

@@ -54,24 +54,11 @@ pub(super) fn allowed<T: Scalar>(touch: &[T], faced: &[Outside], in_step: &InSte
     (allowed, allowed - stays)
 }
 
-/// What a point holds (J) of the energy that contact has taken there, by where it has gone in the last step: what it
-/// held and has taken, but where it is inside no less than half and no more than twice what a spring of its force holds
-/// that is so deep. In all that it faces, with how deep it may be (m).
-pub(super) fn holds<T: Scalar>(touch: &[T], faced: &[Outside], allowed: f64) -> f64 {
-    let [energy, force] = [touch[6].to_f64(), touch[7].to_f64()];
-    let (mut depths, mut squares, mut went) = (0.0, 0.0, 0.0);
-    for outside in faced {
-        let deep = (allowed - outside.now).max(0.0);
-        depths += deep;
-        squares += deep * deep;
-        went += deep * outside.went;
-    }
-    if depths <= 0.0 {
-        return (energy - 0.5 * force * faced.first().map_or(0.0, |outside| outside.went)).max(0.0);
-    }
-    let now = energy - 0.5 * force * went / depths;
-    let spring = 0.5 * force * squares / depths;
-    if force > 0.0 { now.max(0.5 * spring).min(2.0 * spring) } else { now }
+/// The stiffness of the spring that has pressed a point (N/m), by the force at last and how deep it is now in all that it
+/// faces, with how deep it may be (m).
+pub(super) fn stiffness<T: Scalar>(touch: &[T], faced: &[Outside], allowed: f64) -> f64 {
+    let deep: f64 = faced.iter().map(|outside| (allowed - outside.now).max(0.0)).sum();
+    if deep > 0.0 { touch[6].to_f64() / deep } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The contacts of a step: which points end too near what they face, and where nodes would go.
 
 use super::body_slices::{BodySlices, set_vector, vector_at};
-use super::depth::{Outside, allowed, holds};
+use super::depth::{Outside, allowed, stiffness};
 use super::faced::face;
 use super::{Meeting, Surface, SurfaceContacts, crossings, turns};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
@@ -33,8 +33,6 @@ pub(super) struct Seen {
     pub allowed: f64,
     /// Whether it faces two walls.
     pub in_corner: bool,
-    /// What it holds (J).
-    pub holds: f64,
 }
 
 /// The contacts of a step, and what they act on: nodes that are near something.
@@ -120,12 +118,10 @@ struct Met {
     point: u32,
     of_point: bool,
     outside: f64,
-    /// [`Contact::deep`].
-    deep: f64,
-    /// [`Contact::holds`].
-    holds: Option<f64>,
-    /// [`Contact::settles`].
-    settles: f64,
+    /// [`Contact::stiffness`].
+    stiffness: Option<f64>,
+    /// [`Contact::lets_out`].
+    lets_out: f64,
     /// [`Contact::beside`].
     beside: f64,
 }
@@ -137,9 +133,8 @@ struct Inside {
     allowed: f64,
     /// How far that has come out in this step (m).
     settles: f64,
-    /// What it holds of the energy that it has taken, over the sum of the squares of its depths in all that it faces
-    /// (J/m²); `None` where nobody asks.
-    holds: Option<f64>,
+    /// [`Contact::stiffness`].
+    stiffness: Option<f64>,
     /// [`Contact::beside`].
     beside: f64,
 }
@@ -209,8 +204,7 @@ impl Nodes<'_> {
             let mut contact = Contact::new(parts, (normal, gap, step), resists());
             (contact.springs, contact.point) = (spring.is_some(), of.point);
             (contact.of_point, contact.outside) = (of.of_point, of.outside);
-            (contact.deep, contact.holds) = (of.deep, of.holds);
-            (contact.settles, contact.beside) = (of.settles, of.beside);
+            (contact.stiffness, contact.lets_out, contact.beside) = (of.stiffness, of.lets_out, of.beside);
             batch.push(contact);
         }
     }
@@ -246,14 +240,13 @@ pub(super) fn gather<T: Scalar>(
         let (allowed, settles) = allowed(touch, &faced, &in_step);
         // as it is kept
         let allowed = T::from_f64(allowed).to_f64();
-        let holds = holds(touch, &faced, allowed);
+        let stiffness = stiffness(touch, &faced, allowed);
         let outside = faced.iter().map(|outside| outside.now).fold(f64::INFINITY, f64::min);
-        seen.push(Seen { point, outside, allowed, in_corner, holds });
-        let squares: f64 = faced.iter().map(|outside| (allowed - outside.now).max(0.0).powi(2)).sum();
-        let held = if squares > 0.0 { holds / squares } else { 0.0 };
+        seen.push(Seen { point, outside, allowed, in_corner });
         // walls that meet at less than 90° push into each other
         let beside = other.as_ref().map_or(1.0, |other| 1.0 + sight.facing.normal.dot(other.facing.normal).min(0.0));
-        let inside = Inside { allowed, settles, holds: clock.relaxation.is_none().then_some(held), beside };
+        let stiffness = clock.relaxation.is_none().then_some(stiffness);
+        let inside = Inside { allowed, settles, stiffness, beside };
         let mut meet = |sight: Sight<'_>| {
             nodes.meet((contacts, of_bodies), (sight, touch), (point, inside), batch);
         };
@@ -262,15 +255,12 @@ pub(super) fn gather<T: Scalar>(
             meet(other);
         }
     });
-    for &Seen { point, outside, allowed, in_corner, holds } in seen.iter().flatten() {
+    for &Seen { point, outside, allowed, in_corner } in seen.iter().flatten() {
         let kept = contacts.kept(point);
         let touch = bodies[kept.body].kept_mut(kept);
         set_vector(touch, 0, DVec3::ZERO);
         let state = PointState { did: Did::Faces, in_corner }.number();
-        touch[3..8]
-            .iter_mut()
-            .zip([allowed, state, outside, holds, 0.0])
-            .for_each(|(of, number)| *of = T::from_f64(number));
+        touch[3..6].iter_mut().zip([allowed, state, outside]).for_each(|(of, number)| *of = T::from_f64(number));
         facing.push(point);
     }
     crossings::find(contacts, reach);
@@ -284,8 +274,7 @@ pub(super) fn gather<T: Scalar>(
         let gap = outside.max(-meeting.settling(clock));
         let [of_one, of_other] = &crossing.weights;
         // nodes are the first of the points
-        let (point, deep) = (one.nodes[0], -gap);
-        let met = Met { point, of_point: false, outside, deep, holds: None, settles: 0.0, beside: 1.0 };
+        let met = Met { point: one.nodes[0], of_point: false, outside, stiffness: None, lets_out: 0.0, beside: 1.0 };
         nodes.add(
             last,
             nodes.between([(&one.nodes, of_one), (&other.nodes, of_other)]),
@@ -340,19 +329,18 @@ impl Nodes<'_> {
             (friction[usize::from(!is_held)], vector_at(touch, 0) - turned)
         };
         let within = if point.triangle.is_some() { SHARES * edge } else { 0.0 };
-        let Inside { allowed, settles, holds, beside } = inside;
+        let Inside { allowed, settles, stiffness, beside } = inside;
+        // what goes in takes energy, and may be let out as far
+        let lets_out = settles.max(-outside.went);
         let outside_allowed = outside.now - allowed;
         let gap = outside_allowed.max(-OUT * edge);
-        let deep = -outside_allowed;
-        // a share of it, by how deep it is in this of all
-        let holds = holds.map(|holds| holds * deep.max(0.0).powi(2));
         self.add(
             batch,
             parts,
             (facing.normal, gap),
             resists,
             (spring, outside_allowed, within),
-            Met { point: number, of_point: true, outside: outside.now, deep, holds, settles, beside },
+            Met { point: number, of_point: true, outside: outside.now, stiffness, lets_out, beside },
         );
     }
 }

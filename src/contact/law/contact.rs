@@ -29,13 +29,10 @@ pub struct Contact {
     pub slides: bool,
     /// Whether a spring presses: by the gap alone, whatever the step that is predicted.
     pub springs: bool,
-    /// What it holds of the energy that it has taken (J), which is all that it may give back; `None` where that is not
-    /// asked.
-    pub holds: Option<f64>,
-    /// How deep the point is inside before the step (m), below 0 outside.
-    pub deep: f64,
-    /// How far it is let out in this step (m), whatever it holds.
-    pub settles: f64,
+    /// The stiffness of the spring that it has been so far (N/m), which it exceeds no more; `None` where nobody asks.
+    pub stiffness: Option<f64>,
+    /// How far it is let out in this step at least (m), whatever spring it has been.
+    pub lets_out: f64,
     /// What a force of the other wall of a corner leaves of how far it yields alone: less than 1 where that pushes
     /// back.
     pub beside: f64,
@@ -69,9 +66,8 @@ impl Contact {
             // what nothing holds
             slides: true,
             springs: false,
-            holds: None,
-            deep: -gap,
-            settles: 0.0,
+            stiffness: None,
+            lets_out: 0.0,
             beside: 1.0,
             point: 0,
             of_point: false,
@@ -102,17 +98,15 @@ impl Contact {
         self.press(self.step)
     }
 
-    /// Lets it come out no harder than the spring would that holds what it holds. Of the nodes' masses it has a larger
-    /// share where other contacts have let go, and would give back more than it took.
+    /// Lets a point that is inside come out no harder than the spring would that the contact has been so far. Of the
+    /// nodes' masses it has a larger share where other contacts have let go, and would give back more than it took.
     #[inline(always)]
     fn limit(&mut self) {
-        let (Some(holds), true) = (self.holds, self.deep > 0.0 && !self.springs) else { return };
-        let (stiffness, step) = (2.0 * holds.max(0.0), self.normal.dot(self.step));
-        // times the depth squared
-        let force =
-            stiffness * (self.deep - step) / (self.deep * self.deep + stiffness * self.beside * self.yields_alone);
-        // that is nothing of no number
-        let out = (self.yields * force + step).max(self.settles).max(0.0);
+        let (Some(stiffness), true) = (self.stiffness, self.gap < 0.0 && !self.springs) else { return };
+        let step = self.normal.dot(self.step);
+        let force = stiffness * (-self.gap - step) / (1.0 + stiffness * self.beside * self.yields_alone);
+        // of no number that is nothing
+        let out = (self.yields * force + step).max(self.lets_out).max(0.0);
         self.gap = self.gap.max(-out);
     }
 

@@ -243,7 +243,7 @@ fn one_contact_ends_on_the_surface_and_friction_holds_it() {
 /// What contact gives (J) to a node of 1 kg that a weight presses onto a floor, by and by up to 1 N in steps of 1 s,
 /// while so many others share its mass, and then lets it come out without them.
 fn given_when_others_let_go(others: usize, asked: bool) -> f64 {
-    let (mut height, mut before, mut holds, mut given) = (0.0_f64, 0.0, 0.0_f64, 0.0);
+    let (mut height, mut before, mut force, mut given) = (0.0, 0.0, 0.0, 0.0);
     for step in 0..1100 {
         let weight = (f64::from(step) / 1e3).min(1.0);
         let mut set = ContactSet {
@@ -257,18 +257,14 @@ fn given_when_others_let_go(others: usize, asked: bool) -> f64 {
         let against =
             |normal: DVec3, gap: f64| Contact::new(parts, (normal, gap, set.steps[0].truncate()), (0.0, DVec3::ZERO));
         let (mut floor, wall) = (against(DVec3::Z, height), against(DVec3::X, 0.0));
-        floor.holds = asked.then_some(if height < 0.0 { holds } else { 0.0 });
+        floor.stiffness = asked.then_some(if height < 0.0 { -force / height } else { 0.0 });
         set.add(floor);
         (0..others).filter(|_| step < 1000).for_each(|_| set.add(wall));
         set.solve(1, &one());
         let after = set.steps[0].z;
         if let Some(floor) = set.contacts().next() {
             given += 0.5 * floor.pressing * (before + after);
-            // no more than twice, and no less than half of what a spring holds
-            let spring = 0.5 * floor.pressing * (-height - after).max(0.0);
-            holds = (floor.holds.unwrap_or(0.0) - 0.5 * floor.pressing * (before + after))
-                .max(0.5 * spring)
-                .min(2.0 * spring);
+            force = floor.pressing;
         }
         (height, before) = (height + after, after);
     }

@@ -1,11 +1,11 @@
-use super::{InStep, Outside, allowed, holds};
+use super::{InStep, Outside, allowed, stiffness};
 use crate::components::{Did, MEETING_NUMBERS, PointState};
 
 const STEP: InStep = InStep { largest: 1e-4, settling: 0.0 };
 
 /// What is kept of a point that may be so deep inside and was so far outside (m).
 fn touch(did: Did, in_corner: bool, [allowed, outside]: [f64; 2]) -> [f64; MEETING_NUMBERS] {
-    [0.0, 0.0, 0.0, allowed, PointState { did, in_corner }.number(), outside, 0.0, 0.0, 0.0, 0.0]
+    [0.0, 0.0, 0.0, allowed, PointState { did, in_corner }.number(), outside, 0.0, 0.0, 0.0]
 }
 
 fn outside(now: f64, went: f64) -> Outside {
@@ -64,22 +64,13 @@ fn a_wall_that_comes_round_does_not_throw_out() {
     assert!((found + 1e-3 - (1e-6 + 2e-4)).abs() < 1e-12, "{found}");
 }
 
-/// What a point holds is what it held and has taken by where it went, within half and twice of what a spring holds; of a
-/// wall that it is found deeper in no less than half of that.
+/// What presses a point is as stiff as its force is over how deep the point is, in both walls of a corner.
 #[test]
-fn what_a_point_holds_goes_with_where_it_went() {
+fn a_spring_is_as_stiff_as_its_force_says() {
     let mut kept = touch(Did::Slides, false, [0.0, -1e-6]);
-    // half a step's work is counted before
-    (kept[6], kept[7]) = (1e-6, 2.0);
-    let at = |deep: f64, went: f64| holds(&kept, &[outside(-deep, went)], 0.0);
-    // 2 N go .2 µm inwards in half of the work
-    assert!((at(1.1e-6, -2e-7) - 1.2e-6).abs() < 1e-18);
-    assert!((at(1e-7, -2e-7) - 2e-7).abs() < 1e-18 && (at(1e-5, -2e-7) - 5e-6).abs() < 1e-18);
-    // outside, what is left; of two walls by how deep it is in each
-    assert!((at(-1e-7, 5e-7) - 5e-7).abs() < 1e-18 && at(-1e-7, 5e-6) == 0.0);
-    let two = holds(&kept, &[outside(-3e-6, -1e-7), outside(-1e-6, 1e-7)], 0.0);
-    assert!((two - 1.25e-6).abs() < 1e-18, "{two:e}");
-    // what did not press keeps what it has
-    kept[7] = 0.0;
-    assert_eq!(holds(&kept, &[outside(-1e-5, -1e-6)], 0.0), 1e-6);
+    kept[6] = 2.0;
+    let at = |faced: &[Outside], allowed| stiffness(&kept, faced, allowed);
+    let [one, other] = [outside(-3e-6, 0.0), outside(-1e-6, 0.0)];
+    assert!((at(&[one], 0.0) - 2.0 / 3e-6).abs() < 1e-6 && (at(&[one], -1e-6) - 1e6).abs() < 1e-6);
+    assert!((at(&[one, other], 0.0) - 5e5).abs() < 1e-6 && at(&[outside(1e-6, 0.0)], 0.0) == 0.0);
 }
