@@ -6,5 +6,5 @@
 fn note_farther(node: u32, farther: vec3<f32>) {
     let at = 3u * node;
     let force = vec3<f32>(contact_force[at], contact_force[at + 1u], contact_force[at + 2u]);
-    surface_touch[MET * node + 8u] -= step.work_factor * 0.5 * dot(force, farther);
+    surface_touch[MET * node + 7u] -= step.work_factor * 0.5 * dot(force, farther);
 }

@@ -207,7 +207,7 @@ fn sight(point: u32, place: vec3<f32>, facing: Facing) -> Outside {
 }
 
 // How much deeper (m) a point is than motion tells that was so far outside (m), of one face that it sees, or of two:
-// twin of `allowed` in systems/surface_contact/depth.rs.
+// twin of `allowed` in systems/surface_contact/gather.rs.
 fn deeper_than_expected(
     did: f32, was_in_corner: bool, last: f32, first: Outside, second: Outside, sees_two: bool) -> f32 {
     let lowest = min(first.now, select(first.now, second.now, sees_two));
@@ -229,23 +229,13 @@ fn deeper_than_expected(
     return min(of_second, max(second.now - second.went, 0.0) - of_new);
 }
 
-// What is known of a point that may be inside.
-struct Inside {
-    allowed: f32, // how deep it may be (m)
-    settles: f32, // how far that has come out in this step (m)
-    stiffness: f32, // of the spring that has pressed it (N/m)
-    beside: f32, // what the other wall of a corner leaves of how far it yields alone
-}
-
 // The contact of a point with something that it faces, if it meets that.
-fn meet(contact: u32, point: u32, place: vec3<f32>, facing: Facing, outside: Outside, inside: Inside, slip: vec3<f32>,
+fn meet(contact: u32, point: u32, place: vec3<f32>, facing: Facing, outside: Outside, allowed: f32, slip: vec3<f32>,
     did: f32) {
     let meets = meeting_with(facing.triangle);
     let edge = meeting_number(meets, EDGE);
-    let gap = max(outside.now - inside.allowed, -OUT * edge);
-    // what goes in takes energy, and may be let out as far
-    let begun = Begun(facing.normal, gap, outside.now, inside.allowed, SHARES * edge, 0.0, slip, inside.stiffness,
-        max(inside.settles, -outside.went), inside.beside);
+    let gap = max(outside.now - allowed, -OUT * edge);
+    let begun = Begun(facing.normal, gap, outside.now, allowed, SHARES * edge, 0.0, slip);
     begin_if_met(contact, meets, parts_of(point, facing, place), begun, did);
 }
 
@@ -281,20 +271,10 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
         let settling = settling_of_step(meeting_with(both.first.triangle));
         let last = surface_touch[at + 5u];
         let deeper = deeper_than_expected(did, was_in_corner, last, first, second, in_corner);
-        let stays = max(before + min(deeper, 0.0), min(lowest, 0.0));
-        allowed = max(min(stays + settling, 0.0), min(lowest, 0.0));
-        var deep = max(allowed - first.now, 0.0);
-        var beside = 1.0;
+        allowed = max(min(before + min(deeper, 0.0) + settling, 0.0), min(lowest, 0.0));
+        meet(2u * point, point, place, both.first, first, allowed, slip, did);
         if both.second.there {
-            deep += max(allowed - second.now, 0.0);
-            // walls that meet at less than 90° push into each other
-            beside += min(dot(both.first.normal, both.second.normal), 0.0);
-        }
-        let spring = select(0.0, surface_touch[at + 6u] / max(deep, 1e-37), deep > 0.0);
-        let inside = Inside(allowed, allowed - stays, select(spring, UNASKED, surface.relaxed != 0u), beside);
-        meet(2u * point, point, place, both.first, first, inside, slip, did);
-        if both.second.there {
-            meet(2u * point + 1u, point, place, both.second, second, inside, slip, did);
+            meet(2u * point + 1u, point, place, both.second, second, allowed, slip, did);
         }
     }
     for (var k = 0u; k < 3u; k++) {
@@ -303,7 +283,4 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     surface_touch[at + 3u] = allowed;
     surface_touch[at + 4u] = select(FREE, FACES, both.first.there) + select(0.0, IN_CORNER, in_corner);
     surface_touch[at + 5u] = lowest;
-    if !both.first.there {
-        surface_touch[at + 6u] = 0.0;
-    }
 }

@@ -16,9 +16,6 @@ struct Begun {
     within: f32, // nearer than this it ends, or is nothing to keep (m)
     friction: f32,
     slip: vec3<f32>,
-    stiffness: f32, // of the spring that it has been so far (N/m)
-    lets_out: f32, // how far it is let out in this step at least, whatever spring that is (m)
-    beside: f32, // what the other wall of a corner leaves of how far it yields alone
 }
 
 fn meeting(point: u32, face: u32) -> u32 {
@@ -85,9 +82,6 @@ fn begin(contact: u32, meets: u32, parts: Parts, begun: Begun) {
     set_vector(contact, SLIP, begun.slip);
     set_number(contact, PRESSING, 0.0);
     set_vector(contact, RUBBING, vec3<f32>(0.0));
-    set_number(contact, STIFFNESS, begun.stiffness);
-    set_number(contact, LETS_OUT, begun.lets_out);
-    set_number(contact, BESIDE, begun.beside);
     let at = CONTACT_WORDS * contact;
     surface_contacts[at + SLIDING] = 1u; // what nothing holds
     for (var part = 0u; part < PARTS; part++) {

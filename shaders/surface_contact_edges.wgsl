@@ -166,9 +166,7 @@ fn surface_contact_edges(@builtin(global_invocation_id) id: vec3<u32>, @builtin(
         let outside = found.gap - thickness;
         let friction = meeting_number(meets, 2u);
         let settling = settling_of_step(meets);
-        let gap = max(outside, -settling);
-        let begun = Begun(found.normal, gap, outside, 0.0, 0.0, friction, vec3<f32>(0.0), UNASKED, 0.0,
-            1.0);
+        let begun = Begun(found.normal, max(outside, -settling), outside, 0.0, 0.0, friction, vec3<f32>(0.0));
         if !meets_it(meets, parts, begun) {
             continue;
         }

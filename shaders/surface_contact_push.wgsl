@@ -32,6 +32,6 @@ fn surface_contact_push(@builtin(global_invocation_id) id: vec3<u32>, @builtin(n
     external_force[at + 2u] += force.z;
     if surface.relaxed == 0u && any(force != vec3<f32>(0.0)) {
         let mean = 0.5 * (at_node(node, WENT) + at_node(node, NEXT));
-        surface_touch[MET * of_body + 8u] -= step.work_factor * dot(force, mean);
+        surface_touch[MET * of_body + 7u] -= step.work_factor * dot(force, mean);
     }
 }

@@ -22,13 +22,9 @@ fn note(contact: u32, at: u32, of_point: bool) {
         surface_touch[at + 1u] = slip.y;
         surface_touch[at + 2u] = slip.z;
         surface_touch[at + 4u] = in_corner + select(STICKS, SLIDES, slides);
-        surface_touch[at + 6u] = 0.0;
-    }
-    if of_point {
-        surface_touch[at + 6u] += pressing;
     }
     if surface.relaxed == 0u && slides {
-        surface_touch[at + 7u] += length(along_surface(after, normal));
+        surface_touch[at + 6u] += length(along_surface(after, normal));
     }
 }
 

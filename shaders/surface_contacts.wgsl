@@ -13,14 +13,10 @@ const YIELDS: u32 = 13u;
 const YIELDS_ALONG: u32 = 14u;
 const CHANGE: u32 = 15u;
 const ACTIVE: u32 = 18u;
-const STIFFNESS: u32 = 19u;
-const LETS_OUT: u32 = 20u;
-const BESIDE: u32 = 21u;
-const PART: u32 = 22u;
+const PART: u32 = 19u;
 const CONTACT_WORDS: u32 = PART + 2u * PARTS;
 const BY_STEP: u32 = 1u; // what a contact acts by: the step that is predicted, or a spring
 const BY_SPRING: u32 = 2u;
-const UNASKED: f32 = 3e38; // the stiffness of a contact of which that is not asked (N/m)
 
 const NODE_NUMBERS: u32 = 15u; // of a node: place, next step, last step, response, last step for work
 const NEXT: u32 = 3u;

@@ -109,7 +109,7 @@ pub(super) fn note_farther(
 ) {
     if let Some((force, touch)) = met {
         // what contact goes on from stays as it is
-        let (touch, at) = (touch.bypass_change_detection(), MEETING_NUMBERS * row + 8);
+        let (touch, at) = (touch.bypass_change_detection(), MEETING_NUMBERS * row + 7);
         let loss = touch.get(at) - 0.5 * work_factor * force.vector(row).dot(farther);
         touch.set(at, loss);
     }

@@ -2,7 +2,6 @@
 
 mod body_slices;
 mod crossings;
-mod depth;
 mod device;
 mod ends;
 mod faced;

@@ -1,11 +1,10 @@
 //! The law of contact between bodies: the impulses that keep predicted steps from ending inside one another.
 
-mod contact;
 mod of_nodes;
 mod tasks;
 
+use super::parts::Parts;
 use crate::backend::cpu::Cpu;
-pub use contact::Contact;
 use glam::{DVec3, DVec4};
 use of_nodes::OfNodes;
 use tasks::{Begin, Correct, Correction, Forces, Note, Push};
@@ -15,6 +14,149 @@ const WORTH_SHARING: usize = 1024;
 
 /// What is no gain of energy, as a share of what contacts give and take.
 const ROUNDING: f64 = 1e-9;
+
+/// A point and what it faces.
+#[derive(Clone, Copy, Debug)]
+pub struct Contact {
+    /// Its nodes.
+    pub parts: Parts,
+    /// The unit normal, from the face to the point.
+    pub normal: DVec3,
+    /// The gap (m) before the step, where it is negative no more than may be pushed out in a step.
+    pub gap: f64,
+    /// The point's step against the face (m): as it would be, and after [`ContactSet::solve`] as it will be where the
+    /// contact presses.
+    pub step: DVec3,
+    /// The largest tangential part of a normal force.
+    pub friction: f64,
+    /// How far the point has slipped elastically along the face (m).
+    pub slip: DVec3,
+    /// The normal force on the point (N).
+    pub pressing: f64,
+    /// The tangential force on it (N).
+    pub rubbing: DVec3,
+    /// How far it slides in the step (m), found where it presses.
+    pub slid: f64,
+    /// Whether friction does not hold it.
+    pub slides: bool,
+    /// Whether a spring presses: by the gap alone, whatever the step that is predicted.
+    pub springs: bool,
+    /// What whoever made it knows of it: the number of the point, whether that meets a face, and not an edge another,
+    /// and how far it was outside (m).
+    pub point: u32,
+    pub of_point: bool,
+    pub outside: f64,
+    /// How far it yields to a force (m/N), with the shares of its nodes.
+    yields: f64,
+    /// The same along the surface, and not less.
+    yields_along: f64,
+}
+
+impl Contact {
+    /// Of nodes, along a normal with a gap (m), with the step that is predicted (m), a coefficient of friction and the
+    /// slip (m) so far.
+    pub fn new(parts: Parts, (normal, gap, step): (DVec3, f64, DVec3), (friction, slip): (f64, DVec3)) -> Self {
+        Self {
+            parts,
+            normal,
+            gap,
+            step,
+            friction,
+            slip,
+            pressing: 0.0,
+            rubbing: DVec3::ZERO,
+            slid: 0.0,
+            // what nothing holds
+            slides: true,
+            springs: false,
+            point: 0,
+            of_point: false,
+            outside: gap,
+            yields: 0.0,
+            yields_along: 0.0,
+        }
+    }
+
+    /// The force on the point (N).
+    #[inline(always)]
+    pub fn force(&self) -> DVec3 {
+        self.normal * self.pressing + self.rubbing
+    }
+
+    /// The part of a vector along the surface.
+    #[inline(always)]
+    pub fn along(&self, vector: DVec3) -> DVec3 {
+        vector - self.normal * vector.dot(self.normal)
+    }
+
+    /// Finds the normal force of the step that was predicted, with the shares of nodes; gives it as a vector (N).
+    #[inline(always)]
+    fn begin(&mut self, shares: &[f64], responses: &[DVec4]) -> DVec3 {
+        self.find_yields(shares, responses);
+        self.press(self.step)
+    }
+
+    /// Corrects the normal force by a step of the point against the face (m), and gives by how much (N).
+    #[inline(always)]
+    fn press(&mut self, step: DVec3) -> DVec3 {
+        let (gap, before) = match self.springs {
+            true => (self.gap, 0.0),
+            false => (self.gap + self.normal.dot(step), self.pressing),
+        };
+        let pressing = if self.yields > 0.0 { (before - gap / self.yields).max(0.0) } else { 0.0 };
+        let change = self.normal * (pressing - self.pressing);
+        self.pressing = pressing;
+        change
+    }
+
+    /// Corrects the tangential force, and gives by how much (N).
+    #[inline(always)]
+    fn rub(&mut self, steps: &[DVec4]) -> DVec3 {
+        let presses = self.pressing > 0.0 || self.rubbing != DVec3::ZERO;
+        if self.friction <= 0.0 || self.yields_along <= 0.0 || !presses {
+            return DVec3::ZERO;
+        }
+        let slip = self.along(self.slip + self.parts.step(steps));
+        let wanted = self.along(self.rubbing) - slip / self.yields_along;
+        let (bound, size) = (self.friction * self.pressing, wanted.length());
+        self.slides = size > bound;
+        let rubbing = if self.slides { wanted * (bound / size) } else { wanted };
+        let change = rubbing - self.rubbing;
+        self.rubbing = rubbing;
+        change
+    }
+
+    /// Notes where the point goes and how far it has slipped elastically, now that forces are known.
+    #[inline(always)]
+    fn note(&mut self, steps: &[DVec4]) {
+        if self.pressing <= 0.0 {
+            self.slip = DVec3::ZERO;
+            return;
+        }
+        self.step = self.parts.step(steps);
+        self.slid = if self.slides { self.along(self.step).length() } else { 0.0 };
+        if self.friction <= 0.0 {
+            self.slip = DVec3::ZERO;
+            return;
+        }
+        let slip = self.along(self.slip + self.step);
+        let (bound, size) = (self.friction * self.pressing * self.yields_along, slip.length());
+        self.slip = if size > bound { slip * (bound / size) } else { slip };
+    }
+
+    /// Finds how far it yields to forces, from the shares of nodes.
+    #[inline(always)]
+    fn find_yields(&mut self, shares: &[f64], responses: &[DVec4]) {
+        let (mut along_normal, mut largest) = (0.0, 0.0);
+        let ((nodes, weights), normal) = (self.parts.slices(), self.normal.extend(0.0));
+        for (&node, weight) in nodes.iter().zip(weights) {
+            let (share, response) = (weight.abs() * shares[node as usize], responses[node as usize]);
+            along_normal += share * normal.dot(response * normal);
+            largest += share * response.max_element();
+        }
+        (self.yields, self.yields_along) = (along_normal, largest);
+    }
+}
 
 /// What a contact begins a step with: the step that is predicted of the point against the face, and its slip (m).
 #[derive(Clone, Copy, Debug)]

@@ -162,7 +162,7 @@ fn gaps_and_slips(body: Entity, surface: &[FacetNow], world: &mut World) -> Resu
         if touch.get(first + 4) > 0.0 {
             *gap = gap.min(touch.get(first + 5));
         }
-        *slid = slid.max(touch.get(first + 7));
+        *slid = slid.max(touch.get(first + 6));
     };
     if let Some(touch) = entity.get::<FaceTouch>() {
         let counted = surface.iter().map(|of| (of.facet, face_points(of.facet).len()));

@@ -41,7 +41,7 @@ pub fn read_contact(world: &mut World, body: Entity) -> Result<Option<ContactRea
             reading.points += 1;
             reading.penetration = reading.penetration.max(-touch.get(first + 5));
         }
-        loss += touch.get(first + 8);
+        loss += touch.get(first + 7);
     }
     reading.loss = world.resource::<Clock>().relaxation.is_none().then_some(loss);
     Ok(Some(reading))
@@ -73,8 +73,8 @@ pub(super) fn loss(world: &mut World) -> Result<Option<f64>, Error> {
         |of: &Reals, number: usize, stride: usize| (number..of.len()).step_by(stride).map(|at| of.get(at)).sum();
     let mut losses: Vec<f64> = Vec::new();
     for (of_nodes, of_faces) in world.query::<(&SurfaceTouch, Option<&FaceTouch>)>().iter(world) {
-        losses.push(every(&of_nodes.0, 8, MEETING_NUMBERS));
-        losses.extend(of_faces.map(|of_faces| every(&of_faces.0, 8, MEETING_NUMBERS)));
+        losses.push(every(&of_nodes.0, 7, MEETING_NUMBERS));
+        losses.extend(of_faces.map(|of_faces| every(&of_faces.0, 7, MEETING_NUMBERS)));
     }
     for (contacts, touch) in world.query::<(&ToolContacts, &ToolTouch)>().iter(world) {
         losses.push(every(&touch.0, 6, contacts.numbers_a_tool()));

@@ -1,7 +1,6 @@
 //! The contacts of a step: which points end too near what they face, and where nodes would go.
 
 use super::body_slices::{BodySlices, set_vector, vector_at};
-use super::depth::{Outside, allowed, stiffness};
 use super::faced::face;
 use super::{Meeting, Surface, SurfaceContacts, crossings, turns};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
@@ -10,7 +9,6 @@ use crate::contact::{Beginning, Contact, ContactSet, Faced, Facing, Parts, Point
 use crate::math::Scalar;
 use crate::systems::tool_contact::STILL;
 use glam::{DVec3, DVec4};
-use smallvec::SmallVec;
 
 /// How far a point that is inside comes out in a step at most, in the smaller edges of both bodies: elements of neither
 /// are to turn over.
@@ -33,6 +31,25 @@ pub(super) struct Seen {
     pub allowed: f64,
     /// Whether it faces two walls.
     pub in_corner: bool,
+}
+
+/// What is the same for all points in a step.
+pub(super) struct InStep {
+    /// How far the fastest node went in the last step (m).
+    pub largest: f64,
+    /// How far points that are inside and may be come out (m).
+    pub settling: f64,
+}
+
+/// How a point is to something that it faces.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Outside {
+    /// How far it is outside now (m).
+    pub now: f64,
+    /// How far outwards it has gone since it was noted how far that was (m).
+    pub since: f64,
+    /// The same in the last step (m).
+    pub went: f64,
 }
 
 /// The contacts of a step, and what they act on: nodes that are near something.
@@ -118,25 +135,6 @@ struct Met {
     point: u32,
     of_point: bool,
     outside: f64,
-    /// [`Contact::stiffness`].
-    stiffness: Option<f64>,
-    /// [`Contact::lets_out`].
-    lets_out: f64,
-    /// [`Contact::beside`].
-    beside: f64,
-}
-
-/// What is known of a point that may be inside.
-#[derive(Clone, Copy)]
-struct Inside {
-    /// How deep it may be (m), as [`allowed`] says.
-    allowed: f64,
-    /// How far that has come out in this step (m).
-    settles: f64,
-    /// [`Contact::stiffness`].
-    stiffness: Option<f64>,
-    /// [`Contact::beside`].
-    beside: f64,
 }
 
 /// Nodes whose steps are foreseen.
@@ -204,10 +202,36 @@ impl Nodes<'_> {
             let mut contact = Contact::new(parts, (normal, gap, step), resists());
             (contact.springs, contact.point) = (spring.is_some(), of.point);
             (contact.of_point, contact.outside) = (of.of_point, of.outside);
-            (contact.stiffness, contact.lets_out, contact.beside) = (of.stiffness, of.lets_out, of.beside);
             batch.push(contact);
         }
     }
+}
+
+/// How deep a point may be inside (m) of what it faces, one face or the two walls of a corner: as deep as it is found
+/// there and no motion has brought it, by and by less. A point that was not seen before (at the start, laid bare, at a
+/// corner that comes round) is not thrown out in a step. One that touches went outwards as far as it did in the last
+/// step, and not as far as was foreseen: tools may have held what it touches.
+///
+/// Of walls that change places it is not known which was which. So what has faced two, and what has touched nothing, is
+/// taken to have gone as far as any motion may have brought it; and of two, one of which it has touched, that one is
+/// the one of which motion tells more.
+pub(super) fn allowed<T: Scalar>(touch: &[T], faced: &[Outside], in_step: &InStep) -> f64 {
+    let [before, last] = [touch[3].to_f64(), touch[5].to_f64()];
+    let PointState { did, in_corner } = PointState::of(touch[4].to_f64());
+    let lowest = faced.iter().map(|outside| outside.now).fold(f64::INFINITY, f64::min);
+    let unexpected = |outside: &Outside| outside.now - (last + outside.since);
+    let deeper = match (did, faced) {
+        (Did::Free, _) => lowest,
+        (Did::Sticks | Did::Slides, [one]) if !in_corner => unexpected(one),
+        (Did::Sticks | Did::Slides, [one, other]) if !in_corner => {
+            let is_one = unexpected(one).abs() <= unexpected(other).abs();
+            let (old, new) = if is_one { (one, other) } else { (other, one) };
+            // behind the line where both meet it is behind the other as far as in the one, or less
+            unexpected(old).min((new.now - new.went) - (old.now - old.went).min(0.0))
+        }
+        _ => lowest - (last - 2.0 * in_step.largest),
+    };
+    (before + deeper.min(0.0) + in_step.settling).min(0.0).max(lowest.min(0.0))
 }
 
 /// Finds what points face, and the contacts of a step, of nodes whose steps are foreseen; notes what points face, and
@@ -232,27 +256,22 @@ pub(super) fn gather<T: Scalar>(
         let of = &contacts.surface.points[point as usize];
         let in_step = contacts.in_step(of, first, clock);
         let sight = nodes.sight(contacts, of, first);
+        // as it is kept
+        let allowed = |faced: &[Outside]| T::from_f64(allowed(touch, faced, &in_step)).to_f64();
+        let mut meet = |sight: Sight<'_>, allowed: f64| {
+            nodes.meet((contacts, of_bodies), (sight, touch), (point, allowed), batch);
+        };
         let second = faced.second.as_ref().filter(|_| faced.tip.is_none());
         let other = second.map(|second| nodes.sight(contacts, of, second));
         let in_corner = other.is_some();
-        let faced: SmallVec<[Outside; 2]> =
-            [Some(&sight), other.as_ref()].into_iter().flatten().map(|sight| sight.outside).collect();
-        let (allowed, settles) = allowed(touch, &faced, &in_step);
-        // as it is kept
-        let allowed = T::from_f64(allowed).to_f64();
-        let stiffness = stiffness(touch, &faced, allowed);
-        let outside = faced.iter().map(|outside| outside.now).fold(f64::INFINITY, f64::min);
-        seen.push(Seen { point, outside, allowed, in_corner });
-        // walls that meet at less than 90° push into each other
-        let beside = other.as_ref().map_or(1.0, |other| 1.0 + sight.facing.normal.dot(other.facing.normal).min(0.0));
-        let stiffness = clock.relaxation.is_none().then_some(stiffness);
-        let inside = Inside { allowed, settles, stiffness, beside };
-        let mut meet = |sight: Sight<'_>| {
-            nodes.meet((contacts, of_bodies), (sight, touch), (point, inside), batch);
+        let (outside, allowed) = match &other {
+            Some(other) => (sight.outside.now.min(other.outside.now), allowed(&[sight.outside, other.outside])),
+            None => (sight.outside.now, allowed(&[sight.outside])),
         };
-        meet(sight);
+        seen.push(Seen { point, outside, allowed, in_corner });
+        meet(sight, allowed);
         if let Some(other) = other {
-            meet(other);
+            meet(other, allowed);
         }
     });
     for &Seen { point, outside, allowed, in_corner } in seen.iter().flatten() {
@@ -274,7 +293,7 @@ pub(super) fn gather<T: Scalar>(
         let gap = outside.max(-meeting.settling(clock));
         let [of_one, of_other] = &crossing.weights;
         // nodes are the first of the points
-        let met = Met { point: one.nodes[0], of_point: false, outside, stiffness: None, lets_out: 0.0, beside: 1.0 };
+        let met = Met { point: one.nodes[0], of_point: false, outside };
         nodes.add(
             last,
             nodes.between([(&one.nodes, of_one), (&other.nodes, of_other)]),
@@ -308,7 +327,7 @@ impl Nodes<'_> {
         &self,
         (contacts, bodies): (&SurfaceContacts, &[BodySlices<'_, T>]),
         (Sight { facing, parts, outside }, touch): (Sight<'_>, &[T]),
-        (number, inside): (u32, Inside),
+        (number, allowed): (u32, f64),
         batch: &mut Vec<Contact>,
     ) {
         let surface = &contacts.surface;
@@ -329,18 +348,17 @@ impl Nodes<'_> {
             (friction[usize::from(!is_held)], vector_at(touch, 0) - turned)
         };
         let within = if point.triangle.is_some() { SHARES * edge } else { 0.0 };
-        let Inside { allowed, settles, stiffness, beside } = inside;
-        // what goes in takes energy, and may be let out as far
-        let lets_out = settles.max(-outside.went);
-        let outside_allowed = outside.now - allowed;
-        let gap = outside_allowed.max(-OUT * edge);
+        let gap = (outside.now - allowed).max(-OUT * edge);
         self.add(
             batch,
             parts,
             (facing.normal, gap),
             resists,
-            (spring, outside_allowed, within),
-            Met { point: number, of_point: true, outside: outside.now, stiffness, lets_out, beside },
+            (spring, outside.now - allowed, within),
+            Met { point: number, of_point: true, outside: outside.now },
         );
     }
 }
+
+#[cfg(test)]
+mod tests;

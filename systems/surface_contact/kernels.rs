@@ -29,7 +29,7 @@ struct SurfaceBody {
 uniform!(SurfaceBody { first, count, displacements });
 
 /// Words of a contact beside its nodes and weights, as in `shaders/surface_contacts.wgsl`.
-const CONTACT_WORDS: usize = 22;
+const CONTACT_WORDS: usize = 19;
 
 /// Buffers that kernels share.
 struct Shared {

@@ -1,9 +1,8 @@
 //! The forces that keep points outside of what they face.
 
 use super::body_slices::{BodySlices, Kept, set_vector, vector};
-use super::depth::InStep;
 use super::faced::tasks;
-use super::gather::{Gathered, gather};
+use super::gather::{Gathered, InStep, gather};
 use super::{Meeting, Surface, SurfaceContacts};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
@@ -109,7 +108,6 @@ pub(super) fn forget<T: Scalar>(contacts: &mut SurfaceContacts, now: &[u32], bod
         touch[3] = T::default();
         touch[4] = T::from_f64(PointState::default().number());
         touch[5] = T::default();
-        touch[6] = T::default();
     }
     contacts.surface.touching.clear();
     contacts.surface.touching.extend_from_slice(now);
@@ -169,23 +167,21 @@ fn note_touches<T: Scalar>(
             note_touch(touch, contact);
         }
         if counts_ways {
-            touch[7] = T::from_f64(touch[7].to_f64() + contact.slid);
+            touch[6] = T::from_f64(touch[6].to_f64() + contact.slid);
         }
     }
     contacts.surface.figures.deepest = deepest;
 }
 
-/// Notes that a point that faced something touches it, with how much force, and how far it has slipped elastically: of
-/// two walls the first that it touches, for along both it has slipped alike.
+/// Notes that a point that faced something touches it, and how far it has slipped elastically: of two walls the first
+/// that it touches, for along both it has slipped alike.
 pub(super) fn note_touch<T: Scalar>(touch: &mut [T], contact: &Contact) {
     let faced = PointState::of(touch[4].to_f64());
     if !faced.touched() {
         let did = if contact.slides { Did::Slides } else { Did::Sticks };
         set_vector(touch, 0, contact.slip);
         touch[4] = T::from_f64(PointState { did, ..faced }.number());
-        touch[6] = T::default();
     }
-    touch[6] = T::from_f64(touch[6].to_f64() + contact.pressing);
 }
 
 /// Counts what contact takes of each node, with `work_factor` for each joule, by where that goes by now. Who acts on
@@ -202,7 +198,7 @@ fn count_work<T: Scalar>(
         // along axes that are told the step to come was taken for the last one, too
         let ahead = vector(of_body.step, row) - of_body.last_step(row);
         let work = work - 0.5 * set.forces[place].truncate().dot(ahead);
-        let taken = &mut of_body.touch[MEETING_NUMBERS * row + 8];
+        let taken = &mut of_body.touch[MEETING_NUMBERS * row + 7];
         *taken = T::from_f64(taken.to_f64() - work_factor * work);
     }
 }

@@ -1,7 +1,7 @@
 //! Which points may touch what in an implicit step, found as it begins.
 
 use super::body_slices::{BodySlices, vector_at};
-use super::depth::{Outside, allowed};
+use super::gather::{Outside, allowed};
 use super::meet::SignedNodes;
 use super::{Meeting, SurfaceContacts, crossings, faced, turns};
 use crate::backend::cpu::Cpu;
@@ -106,7 +106,7 @@ pub(super) fn pair<T: Scalar>(
         let Some(first) = sights.first() else { continue };
         let faced: SmallVec<[Outside; 2]> = sights.iter().map(|&(.., outside)| outside).collect();
         let kept = contacts.kept(number);
-        let allowed = allowed(bodies[kept.body].kept(kept), &faced, &contacts.in_step(point, first.0, clock)).0;
+        let allowed = allowed(bodies[kept.body].kept(kept), &faced, &contacts.in_step(point, first.0, clock));
         for (&(facing, meeting, outside), what) in sights.iter().zip([What::First, What::Second]) {
             let (nodes, points) = surface.between(point, facing);
             // on the way to rest nobody knows it before nodes are where they will be

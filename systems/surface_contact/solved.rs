@@ -228,7 +228,7 @@ pub(crate) fn count_work(
         };
         let relative: DVec3 = contact.parts.iter().filter_map(part).sum();
         let Kept { body, of_face, first } = contacts.kept(contact.point);
-        counted.push((bodies[body], of_face, first + 7, contact.along(relative).length()));
+        counted.push((bodies[body], of_face, first + 6, contact.along(relative).length()));
     }
     for (&body, first) in bodies.iter().zip(&firsts) {
         let (Some(now), &Some(first)) = (world.get::<ContactForce>(body), first) else { continue };
@@ -237,7 +237,7 @@ pub(crate) fn count_work(
             let forces = force + before.map_or(DVec3::ZERO, |before| before.vector(row));
             if forces != DVec3::ZERO {
                 let taken = -0.5 * forces.dot(moved(first + 3 * row));
-                counted.push((body, false, MEETING_NUMBERS * row + 8, taken));
+                counted.push((body, false, MEETING_NUMBERS * row + 7, taken));
             }
         }
     }

@@ -16,7 +16,7 @@ use std::ops::{Deref, DerefMut, Range};
 pub(super) const NEAR_AT_REST: f64 = 1.5;
 
 /// Numbers of a point that are of its last step: what it has slid and lost since the start stays.
-const OF_A_STEP: usize = 7;
+const OF_A_STEP: usize = 6;
 
 /// Which triangles a step looks at beyond those within thickness and motion, in the smaller edges of both bodies.
 pub(super) const MARGIN: f64 = 1e-2;

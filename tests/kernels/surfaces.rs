@@ -49,13 +49,12 @@ fn world((bodies, who): (&str, &str), friction: f64, more: &str) -> Simulation {
     simulation
 }
 
-/// Some faced others, some stuck, some slid; some in corners; some were pressed, more or less.
+/// Some faced others, some stuck, some slid; some in corners.
 fn stick(touch: &mut Reals) {
     for point in 0..touch.len() / MEETING_NUMBERS {
         let states = [0.0, 1.0, 2.0, 3.0, 5.0, 6.0, 7.0];
         touch.set(MEETING_NUMBERS * point + 4, states[point % states.len()]);
         touch.set(MEETING_NUMBERS * point, 1e-6);
-        touch.set(MEETING_NUMBERS * point + 6, [0.0, 1e-5, 1e-3, 1.0][point % 4]);
     }
 }
 

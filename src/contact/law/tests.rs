@@ -1,7 +1,6 @@
 //! The law on random sets of contacts, some of them redundant.
 
 use super::*;
-use crate::contact::Parts;
 use fastrand::Rng;
 
 fn one() -> Cpu {
@@ -238,47 +237,4 @@ fn one_contact_ends_on_the_surface_and_friction_holds_it() {
     set.batches[0][0] = Contact::new(parts, (DVec3::Z, 0.25, set.steps[0].truncate()), (0.2, DVec3::ZERO));
     set.solve(1, &one());
     assert!((set.steps[0].x - 0.15).abs() < 1e-15 && set.batches[0][0].slides, "{:?}", set.steps);
-}
-
-/// What contact gives (J) to a node of 1 kg that a weight presses onto a floor, by and by up to 1 N in steps of 1 s,
-/// while so many others share its mass, and then lets it come out without them.
-fn given_when_others_let_go(others: usize, asked: bool) -> f64 {
-    let (mut height, mut before, mut force, mut given) = (0.0, 0.0, 0.0, 0.0);
-    for step in 0..1100 {
-        let weight = (f64::from(step) / 1e3).min(1.0);
-        let mut set = ContactSet {
-            steps: vec![DVec4::new(0.0, 0.0, before - weight, 0.0)],
-            earlier: vec![DVec4::new(0.0, 0.0, before, 0.0)],
-            responses: vec![DVec3::ONE.extend(0.0)],
-            ..ContactSet::default()
-        };
-        let mut parts = Parts::default();
-        parts.add(0, 1.0);
-        let against =
-            |normal: DVec3, gap: f64| Contact::new(parts, (normal, gap, set.steps[0].truncate()), (0.0, DVec3::ZERO));
-        let (mut floor, wall) = (against(DVec3::Z, height), against(DVec3::X, 0.0));
-        floor.stiffness = asked.then_some(if height < 0.0 { -force / height } else { 0.0 });
-        set.add(floor);
-        (0..others).filter(|_| step < 1000).for_each(|_| set.add(wall));
-        set.solve(1, &one());
-        let after = set.steps[0].z;
-        if let Some(floor) = set.contacts().next() {
-            given += 0.5 * floor.pressing * (before + after);
-            force = floor.pressing;
-        }
-        (height, before) = (height + after, after);
-    }
-    given
-}
-
-/// What has sunk in gives back no more than it took when others let go: with all that its share of masses allows, it
-/// gives half a joule more for each of them.
-#[test]
-fn what_has_sunk_in_gives_back_no_more_than_it_took() {
-    for others in [1_usize, 2, 3, 5] {
-        let [all, limited] = [false, true].map(|asked| given_when_others_let_go(others, asked));
-        let more = 0.5 * others as f64;
-        assert!((all - more).abs() < 0.01 * more, "{others} others: {all} J");
-        assert!(limited < 0.0 && limited > -more, "{others} others: {limited} J");
-    }
 }

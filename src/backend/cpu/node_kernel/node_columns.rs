@@ -170,7 +170,7 @@ impl<T: Scalar> NodeColumns<'_, T> {
     pub(crate) fn note_farther(&mut self, row: usize, farther: DVec3, work_factor: f64) {
         if let Some(Met { force, touch }) = &mut self.met {
             let given = 0.5 * work_factor * vector_at(force, 3 * row).dot(farther);
-            let loss = &mut touch[MEETING_NUMBERS * row + 8];
+            let loss = &mut touch[MEETING_NUMBERS * row + 7];
             *loss = T::from_f64(loss.to_f64() - given);
         }
     }
