@@ -230,16 +230,23 @@ impl<'a> Slot<'a> {
 
     /// With maps where the scene wants such, of names that are not there yet.
     fn with_maps(mut self, source: &Source) -> Self {
-        // what is inside is looked at where its holder is right
+        // what is inside is looked at where its holder is right; so until nothing is found any more
         for _ in 1..self.new.len() {
             let mut with = source.clone();
             self.put(&mut with, (0, 0), &[("x", Origin::of(0, 0))]);
             let wanted = wants_maps::<Scene>(&with);
-            let mut at = self.span.start;
+            let (mut at, mut is_found) = (self.span.start, false);
             for i in 0..self.new.len() {
+                let length: usize = self.before(i).iter().map(|text| text.len()).sum();
                 // the bracket before a name holds it
-                self.in_maps[i] |= i > 0 && wanted.iter().any(|span| span.start == at);
-                at += self.before(i).iter().map(|text| text.len()).sum::<usize>();
+                if i > 0 && wanted.iter().any(|span| span.start == at) {
+                    self.in_maps[i] = true;
+                    is_found = true;
+                }
+                at += length;
+            }
+            if !is_found {
+                break;
             }
         }
         self
