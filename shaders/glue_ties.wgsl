@@ -14,7 +14,7 @@ struct GlueTies {
 @group(0) @binding(0) var<uniform> glue_of: GlueTies;
 @group(0) @binding(0) var<storage, read> glue_ties: array<u32>;
 
-const NODE_NUMBERS: u32 = 15u; // displacement, next step, last step, response, last step for work
+const NODE_NUMBERS: u32 = 16u; // displacement, next step, last step, response, last step for work, one of nobody
 const NEXT: u32 = 3u;
 const LAST: u32 = 6u;
 const RESPONSE: u32 = 9u;

@@ -22,7 +22,7 @@ fn surface_contact_foresee(@builtin(global_invocation_id) id: vec3<u32>, @builti
     }
     let node = surface_rows[4u * (body.first + i)];
     let at = 3u * node;
-    let to = 15u * (body.first + i);
+    let to = 16u * (body.first + i);
     let held = (vec3<u32>(constrained_axes[node]) & vec3<u32>(1u, 2u, 4u)) != vec3<u32>(0u);
     let free = select(vec3<f32>(1.0), vec3<f32>(0.0), held);
     let inertia = mass[node];

@@ -20,7 +20,7 @@ fn surface_contact_hold(@builtin(global_invocation_id) id: vec3<u32>, @builtin(n
         return;
     }
     let first = 7u * i;
-    let to = 15u * holdable[first];
+    let to = 16u * holdable[first];
     let at = 3u * holdable[first + 1u];
     let rest = bitcast<vec3<f32>>(vec3<u32>(holdable[first + 4u], holdable[first + 5u], holdable[first + 6u]));
     let place = rest + vec3<f32>(displacement[at], displacement[at + 1u], displacement[at + 2u]);

@@ -1,6 +1,5 @@
 // The normal forces of contacts between surfaces, a thread a contact; twin of src/contact/law.rs. After
 // surface_contact_share.wgsl; surface_contact_apply.wgsl gives them to nodes.
-@group(0) @binding(0) var<storage, read> surface_shares: array<f32>;
 
 @compute @workgroup_size(64)
 fn surface_contact_impulse(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -17,7 +16,7 @@ fn surface_contact_impulse(@builtin(global_invocation_id) id: vec3<u32>, @builti
             continue;
         }
         let node = part_node(contact, part);
-        let share = abs(weight) * surface_shares[node];
+        let share = abs(weight) * surface_nodes[NODE_NUMBERS * node + SHARE];
         let response = at_node(node, RESPONSE);
         yields += share * dot(normal, response * normal);
         along += share * max(response.x, max(response.y, response.z));

@@ -11,6 +11,7 @@ struct SurfaceBody {
 @group(0) @binding(0) var<storage, read> surface_lists: array<u32>;
 @group(0) @binding(0) var<storage, read> displacement: array<f32>;
 @group(0) @binding(0) var<storage, read> displacement_increment: array<f32>;
+@group(0) @binding(0) var<storage, read> surface_touch: array<f32>;
 @group(0) @binding(0) var<storage, read_write> surface_nodes: array<f32>;
 @group(0) @binding(0) var<storage, read_write> surface_motion: array<atomic<u32>>;
 
@@ -29,13 +30,14 @@ fn surface_contact_place(@builtin(global_invocation_id) id: vec3<u32>, @builtin(
     let place = bitcast<vec3<f32>>(rest) + u;
     let then = body.displacements + 3u * node;
     let moved = u - bitcast<vec3<f32>>(vec3<u32>(surface_lists[then], surface_lists[then + 1u], surface_lists[then + 2u]));
-    let to = 15u * node;
+    let to = 16u * node;
     surface_nodes[to] = place.x;
     surface_nodes[to + 1u] = place.y;
     surface_nodes[to + 2u] = place.z;
     surface_nodes[to + 6u] = d.x;
     surface_nodes[to + 7u] = d.y;
     surface_nodes[to + 8u] = d.z;
+    surface_nodes[to + 15u] = surface_touch[MET * surface_rows[of_node] + 8u];
     // numbers that are not negative are in the order of their bits
     let turn = step.number & 1u;
     atomicMax(&surface_motion[turn], bitcast<u32>(dot(d, d)));

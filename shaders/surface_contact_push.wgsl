@@ -30,7 +30,9 @@ fn surface_contact_push(@builtin(global_invocation_id) id: vec3<u32>, @builtin(n
     external_force[at] += force.x;
     external_force[at + 1u] += force.y;
     external_force[at + 2u] += force.z;
-    if surface.relaxed == 0u && any(force != vec3<f32>(0.0)) {
+    let presses = any(force != vec3<f32>(0.0));
+    surface_touch[MET * of_body + 8u] = select(0.0, surface_nodes[NODE_NUMBERS * node + SHARE], presses);
+    if surface.relaxed == 0u && presses {
         let mean = 0.5 * (at_node(node, WENT) + at_node(node, NEXT));
         surface_touch[MET * of_body + 7u] -= step.work_factor * dot(force, mean);
     }

@@ -1,6 +1,9 @@
-// Into how many shares the mass of a node is split among its contacts, a thread a node; after surface_contact.wgsl and
-// surface_contact_edges.wgsl, before surface_contact_impulse.wgsl. Motion of the next step begins here.
-@group(0) @binding(0) var<storage, read_write> surface_shares: array<f32>;
+// Into how many shares the mass of a node is split among its contacts, and among those that it had, a thread a node;
+// twin of src/contact/law.rs, after surface_contact.wgsl and surface_contact_edges.wgsl, before
+// surface_contact_impulse.wgsl. Motion of the next step begins here.
+@group(0) @binding(0) var<storage, read_write> surface_nodes: array<f32>;
+
+const KEEPS: f32 = 2.0 / 3.0;
 
 fn collect(contact: u32, weight: f32) -> vec3<f32> {
     return vec3<f32>(abs(weight));
@@ -21,5 +24,8 @@ fn surface_contact_share(@builtin(global_invocation_id) id: vec3<u32>, @builtin(
             atomicAdd(&surface_motion[4], 1u);
         }
     }
-    surface_shares[node] = collect_all(node).x;
+    let now = collect_all(node).x;
+    let at = NODE_NUMBERS * node + SHARE;
+    // what touches nothing has none
+    surface_nodes[at] = now + select(0.0, KEEPS * max(surface_nodes[at] - now, 0.0), now > 0.0);
 }

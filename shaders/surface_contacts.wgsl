@@ -18,11 +18,12 @@ const CONTACT_WORDS: u32 = PART + 2u * PARTS;
 const BY_STEP: u32 = 1u; // what a contact acts by: the step that is predicted, or a spring
 const BY_SPRING: u32 = 2u;
 
-const NODE_NUMBERS: u32 = 15u; // of a node: place, next step, last step, response, last step for work
+const NODE_NUMBERS: u32 = 16u; // of a node: place, next step, last step, response, last step for work, shares
 const NEXT: u32 = 3u;
 const LAST: u32 = 6u;
 const RESPONSE: u32 = 9u;
 const WENT: u32 = 12u;
+const SHARE: u32 = 15u;
 
 fn number(contact: u32, word: u32) -> f32 {
     return bitcast<f32>(surface_contacts[CONTACT_WORDS * contact + word]);

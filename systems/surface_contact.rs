@@ -31,7 +31,7 @@ use bevy_ecs::query::QueryData;
 use body_slices::BodySlices;
 pub(crate) use device::find as find_surfaces;
 use glam::DVec3;
-pub(super) use kernels::{ForeseenNodes, note_farther};
+pub(super) use kernels::{FORESEEN_NUMBERS, ForeseenNodes, note_farther};
 pub use memory::SurfaceMemory;
 pub(crate) use solved::{count_work as count_surface_work, find as find_surface_springs, seek as seek_surfaces};
 use std::time::Duration;

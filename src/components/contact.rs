@@ -13,7 +13,8 @@ columns! {
     /// elastically (m, a vector); how deep it may be inside (m, 0 or negative); a [`PointState`] of the last step; how
     /// far it was outside of what it faced before the step, after it in implicit steps, of two the less (m); since the
     /// start the length it has slid (m), and what contact has taken of the node's energy (J), also where it is the
-    /// faces around it that are touched. Exists with [`ContactForce`].
+    /// faces around it that are touched; into how many shares the mass of the node was split in the last step among
+    /// what presses there, by the kinematic law. Exists with [`ContactForce`].
     SurfaceTouch(Reals) = "surface_touch", State of Touch, Nodes(MEETING_NUMBERS);
     /// The same of each point of faces, but that energy is counted at nodes alone: those of a facet after another, as
     /// the body's surface has them, or where [`FacePlaces`] says, and as [`face_points`](crate::contact::face_points)
@@ -111,7 +112,7 @@ impl ContactSpring {
 }
 
 /// Numbers a node in [`SurfaceTouch`], and a point in [`FaceTouch`].
-pub const MEETING_NUMBERS: usize = 8;
+pub const MEETING_NUMBERS: usize = 9;
 
 /// Rows of the nodes of a body's surface that may meet others or be tied to one, ascending: in steps in which something
 /// acts on surfaces no patch moves them as some of its own, so that all forces on them are known before they move. On

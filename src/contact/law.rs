@@ -12,6 +12,12 @@ use tasks::{Begin, Correct, Correction, Forces, Note, Push};
 /// So many contacts are worth the threads; fewer are added up one after the other.
 const WORTH_SHARING: usize = 1024;
 
+/// What a node keeps, from step to step, of the shares that its mass was split into and is not any more. What is d deep
+/// inside gives back what a spring f/d holds, d the more the more shares there are: where these became fewer at once
+/// all of that would come out in a step, and of a cube in a tray, whose walls touch and let go in turn, more energy than
+/// has gone in.
+const KEEPS: f64 = 2.0 / 3.0;
+
 /// What is no gain of energy, as a share of what contacts give and take.
 const ROUNDING: f64 = 1e-9;
 
@@ -181,6 +187,8 @@ pub struct ContactSet {
     pub forces: Vec<DVec4>,
     /// Into how many shares each node's mass is split.
     shares: Vec<f64>,
+    /// Into how many that of nodes that bore a force in the last step was split then, by their places.
+    pub shares_before: Vec<(u32, f64)>,
     /// What a sweep changes of each contact's force (N).
     changes: Vec<DVec3>,
     /// Contacts of each node; of none where they are too few for threads.
@@ -216,11 +224,11 @@ impl ContactSet {
 
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
-        let Self { batches, steps, earlier, responses, forces, shares, changes, of_nodes } = self;
+        let Self { batches, steps, earlier, responses, forces, shares, shares_before, changes, of_nodes } = self;
         let contacts: usize = batches.iter().map(|contacts| size_of_val(&contacts[..])).sum();
         let of_contacts = contacts + size_of_val(&changes[..]) + of_nodes.bytes();
         let vectors = [steps, earlier, responses, forces].map(|all| size_of_val(&all[..]));
-        of_contacts + vectors.iter().sum::<usize>() + size_of_val(&shares[..])
+        of_contacts + vectors.iter().sum::<usize>() + size_of_val(&shares[..]) + size_of_val(&shares_before[..])
     }
 
     /// Finds the forces.
@@ -310,16 +318,30 @@ impl ContactSet {
         if beyond <= ROUNDING * size { 0.0 } else { beyond }
     }
 
-    /// Splits the mass of each node among its contacts.
+    /// Into how many shares the mass of a node has been split.
+    pub fn share(&self, node: usize) -> f64 {
+        self.shares[node]
+    }
+
+    /// Splits the mass of each node among its contacts, and among those that it had, by and by less.
     fn share_masses(&mut self, cpu: &Cpu) {
-        let Self { batches, steps, shares, of_nodes, .. } = self;
+        let Self { batches, steps, shares, shares_before, of_nodes, .. } = self;
         shares.clear();
         shares.resize(steps.len(), 0.0);
-        if !of_nodes.is_empty() {
-            return of_nodes.share(shares, cpu);
+        match of_nodes.is_empty() {
+            false => of_nodes.share(shares, cpu),
+            true => {
+                for (node, weight) in batches.iter().flatten().flat_map(|contact| contact.parts.iter()) {
+                    shares[node] += weight.abs();
+                }
+            }
         }
-        for (node, weight) in batches.iter().flatten().flat_map(|contact| contact.parts.iter()) {
-            shares[node] += weight.abs();
+        for &(node, before) in &*shares_before {
+            let share = &mut shares[node as usize];
+            // what touches nothing has none
+            if *share > 0.0 && before > *share {
+                *share += KEEPS * (before - *share);
+            }
         }
     }
 

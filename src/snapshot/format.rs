@@ -22,7 +22,7 @@ use twox_hash::XxHash64;
 /// How a snapshot begins: a byte that no text has, the name, and what careless copying as text would change.
 const MAGIC: [u8; 8] = *b"\x89sinew\r\n";
 /// Version of the format.
-pub const VERSION: u32 = 7;
+pub const VERSION: u32 = 8;
 /// Bytes before the head.
 const FRONT: usize = 24;
 /// Bytes of the checksum.

@@ -11,7 +11,7 @@ use crate::backend::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
 use crate::backend::step::with_step;
 use crate::components::*;
 use crate::shader;
-use crate::systems::surface_contact::{ForeseenNodes, note_farther};
+use crate::systems::surface_contact::{FORESEEN_NUMBERS, ForeseenNodes, note_farther};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -167,7 +167,7 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
     let rows = buffers.constants("rows of tied nodes".into(), bytemuck::cast_slice(&rows));
     let shared = Shared {
         ties: buffers.constants("ties".into(), bytemuck::cast_slice(&words)),
-        nodes: buffers.constants("nodes that are tied".into(), &vec![0; 4 * 15 * nodes]),
+        nodes: buffers.constants("nodes that are tied".into(), &vec![0; 4 * FORESEEN_NUMBERS * nodes]),
         shares: buffers.constants("shares of nodes that are tied".into(), &vec![0; 4 * nodes]),
         found: buffers.constants("forces of ties".into(), &vec![0; 4 * FOUND_NUMBERS * ties]),
     };

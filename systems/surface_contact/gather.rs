@@ -2,6 +2,7 @@
 
 use super::body_slices::{BodySlices, set_vector, vector_at};
 use super::faced::face;
+use super::meet::share_at;
 use super::{Meeting, Surface, SurfaceContacts, crossings, turns};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
@@ -81,6 +82,19 @@ impl Gathered {
         self.seen.resize_with(batches.max(self.seen.len()), Vec::new);
         self.seen.iter_mut().for_each(Vec::clear);
         self.facing.clear();
+    }
+
+    /// Remembers into how many shares the masses of nodes were split that bore a force in the last step.
+    pub fn remember_shares<T: Scalar>(&mut self, surface: &Surface, bodies: &[BodySlices<'_, T>]) {
+        let near = &surface.near.nodes;
+        let is_near = |&(slot, node): &(u32, u32)| near.get(slot as usize) == Some(&node);
+        let of_pressed = surface.pressed.iter().map(|&node| (self.slots[node as usize], node)).filter(is_near);
+        let share = |(slot, node): (u32, u32)| {
+            let (body, row) = surface.nodes[node as usize];
+            (slot, bodies[body as usize].touch[share_at(row)].to_f64())
+        };
+        self.set.shares_before.clear();
+        self.set.shares_before.extend(of_pressed.map(share));
     }
 
     /// Foresees where the nodes would go that are near something: one after the other in the order of their rows, so

@@ -28,6 +28,9 @@ struct SurfaceBody {
 }
 uniform!(SurfaceBody { first, count, displacements });
 
+/// Numbers of a node whose next step is wanted: see [`ForeseenNodes`].
+pub(in crate::systems) const FORESEEN_NUMBERS: usize = 16;
+
 /// Words of a contact beside its nodes and weights, as in `shaders/surface_contacts.wgsl`.
 const CONTACT_WORDS: usize = 19;
 
@@ -38,7 +41,6 @@ struct Shared {
     motion: BufferId,
     nodes: BufferId,
     rows: BufferId,
-    shares: BufferId,
     contacts: BufferId,
     /// Nodes of a contact at most.
     parts: usize,
@@ -185,9 +187,8 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
         faces: buffers.constants("triangles of surfaces".into(), &words(faces.words)),
         lists: buffers.constants("lists of what may be near what".into(), &words(contacts.list_words(world).whole())),
         motion: buffers.constants("motion of surfaces".into(), &[0; 4 * MOTION_WORDS]),
-        nodes: buffers.constants("nodes of surfaces".into(), &vec![0; 4 * 15 * nodes]),
+        nodes: buffers.constants("nodes of surfaces".into(), &vec![0; 4 * FORESEEN_NUMBERS * nodes]),
         rows: buffers.constants("rows of surfaces".into(), &words(contacts.row_words(world))),
-        shares: buffers.constants("shares of nodes of surfaces".into(), &vec![0; 4 * nodes]),
         contacts: {
             let count = whole.contacts as usize;
             buffers.constants("contacts".into(), &vec![0; 4 * (CONTACT_WORDS + 2 * parts) * count])
@@ -228,7 +229,7 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
     }
     let share = shared.kernel("surface_contact_share", shader!("surface_contact_share"), surface, world);
     let share = shared.of_nodes(share).fragment(shader!("surface_motion_turns"));
-    all.push(share.bind("surface_shares", shared.shares).threads(nodes as u32));
+    all.push(shared.with_nodes(share).threads(nodes as u32));
     let of_contacts =
         |entry, text| shared.relative(shared.kernel(entry, text, surface, world)).threads(whole.contacts).repeated();
     let apply = || {
@@ -237,7 +238,7 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
         shared.with_nodes(kernel).threads(nodes as u32).repeated()
     };
     let impulse = of_contacts("surface_contact_impulse", shader!("surface_contact_impulse"));
-    all.extend([impulse.bind("surface_shares", shared.shares), apply()]);
+    all.extend([impulse, apply()]);
     if contacts.has_friction() {
         all.extend([of_contacts("surface_contact_friction", shader!("surface_contact_friction")), apply()]);
     }
@@ -275,7 +276,9 @@ fn before(
         .bind("surface_lists", shared.lists)
         .bind("surface_motion", shared.motion)
         .bind(Displacement::NAME, buffers.column(body, Displacement::NAME))
-        .bind(DisplacementIncrement::NAME, buffers.column(body, DisplacementIncrement::NAME));
+        .bind(DisplacementIncrement::NAME, buffers.column(body, DisplacementIncrement::NAME))
+        .fragment(numbers_met())
+        .bind(SurfaceTouch::NAME, buffers.column(body, SurfaceTouch::NAME));
     let nodes = ForeseenNodes { rows: shared.rows, nodes: shared.nodes, of_body, count: of.count };
     ([place, nodes.foresee("surface_contact_foresee", body, world, buffers)], nodes)
 }
@@ -299,8 +302,8 @@ pub(in crate::systems) fn note_farther(body: Entity, world: &World) -> (Vec<Frag
 pub(in crate::systems) struct ForeseenNodes {
     /// Four words a node: its row, and three of whoever asks.
     rows: BufferId,
-    /// Fifteen numbers a node: three of whoever asks, the next step, the last step, which must be there already, the
-    /// response to forces, and the last step for work that is counted.
+    /// [`FORESEEN_NUMBERS`] a node: three of whoever asks, the next step, the last step, which must be there already, the
+    /// response to forces, the last step for work that is counted, and one more of whoever asks.
     pub(super) nodes: BufferId,
     /// A [`SurfaceBody`].
     of_body: BufferId,

@@ -82,11 +82,12 @@ impl Surface {
     }
 }
 
-/// Clears the forces of the last step.
+/// Clears the forces of the last step, and into how many shares masses were split in it.
 pub(super) fn release<T: Scalar>(surface: &mut Surface, bodies: &mut [BodySlices<'_, T>]) {
     for node in surface.pressed.drain(..) {
         let (body, row) = surface.nodes[node as usize];
         set_vector(bodies[body as usize].force, 3 * row as usize, DVec3::ZERO);
+        bodies[body as usize].touch[share_at(row)] = T::default();
     }
 }
 
@@ -123,9 +124,10 @@ pub(super) fn meet<T: Scalar>(
 ) {
     let coefficients = IntegrationCoefficients::<f64>::of(clock);
     let mut gathered = std::mem::take(&mut contacts.surface.gathered);
-    release(&mut contacts.surface, bodies);
     // one more for edges that cross
     gathered.begin(tasks(contacts) + 1);
+    gathered.remember_shares(&contacts.surface, bodies);
+    release(&mut contacts.surface, bodies);
     gathered.foresee(&contacts.surface, &coefficients, bodies, cpu);
     gathered.hold(&contacts.surface, (&coefficients, signals), bodies);
     gather(contacts, &mut gathered, (clock, reach, cpu), bodies);
@@ -147,6 +149,7 @@ pub(super) fn meet<T: Scalar>(
         count_work(&contacts.surface, &gathered.set, work_factor, bodies);
     }
     push(contacts, &gathered.set.forces, bodies);
+    note_shares(&contacts.surface, &gathered, bodies);
     contacts.surface.gathered = gathered;
 }
 
@@ -200,6 +203,23 @@ fn count_work<T: Scalar>(
         let work = work - 0.5 * set.forces[place].truncate().dot(ahead);
         let taken = &mut of_body.touch[MEETING_NUMBERS * row + 7];
         *taken = T::from_f64(taken.to_f64() - work_factor * work);
+    }
+}
+
+/// Where the number of shares of a node is among what is kept of those of its body.
+pub(super) fn share_at(row: u32) -> usize {
+    MEETING_NUMBERS * row as usize + 8
+}
+
+/// Notes into how many shares the masses of nodes were split that bear a force.
+fn note_shares<T: Scalar>(
+    Surface { nodes, pressed, .. }: &Surface,
+    Gathered { set, slots, .. }: &Gathered,
+    bodies: &mut [BodySlices<'_, T>],
+) {
+    for &node in pressed {
+        let (body, row) = nodes[node as usize];
+        bodies[body as usize].touch[share_at(row)] = T::from_f64(set.share(slots[node as usize] as usize));
     }
 }
 

@@ -3,6 +3,7 @@
 use super::body_slices::Kept;
 use super::crossings::Crossings;
 use super::look::Motion;
+use super::meet::share_at;
 use super::{MeetingColumns, Surface, SurfaceContacts};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
@@ -76,6 +77,7 @@ fn clear_apart(contacts: &SurfaceContacts, bodies: &mut Query<(Entity, MeetingCo
             let touch = MEETING_NUMBERS * row;
             clear(&mut columns.force, 3 * row..3 * row + 3);
             clear(&mut columns.touch, touch..touch + OF_A_STEP);
+            clear(&mut columns.touch, share_at(row as u32)..share_at(row as u32) + 1);
         }
         let Some(touch) = &mut columns.face_touch else { continue };
         let mut is_there = vec![false; touch.len() / MEETING_NUMBERS];

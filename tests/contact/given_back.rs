@@ -4,9 +4,9 @@ use crate::configurations::{cpu_and_long_gpu, near};
 use glam::DVec3;
 
 /// Two free cubes of which one meets the face of the other with an edge. One sweep leaves nodes of the edge inside, and
-/// when some have let go the rest of them yields less, and is thrown out.
+/// when some have let go the rest of them yields less, by and by: at once it was given 4 %, and thrown out.
 #[test]
-fn an_edge_that_bounces_off_a_face_is_given_more_than_it_brought_by_one_sweep_alone() {
+fn an_edge_that_bounces_off_a_face_is_given_little_by_one_sweep_and_nothing_by_eight() {
     let cube = "mesh: Box(size: (0.02, 0.02, 0.02), cells: (4, 4, 4), elements: Tet4)";
     for run in cpu_and_long_gpu() {
         for (young, sweeps) in [(1e6, 1), (1e6, 8), (1e4, 8)] {
@@ -28,7 +28,8 @@ fn an_edge_that_bounces_off_a_face_is_given_more_than_it_brought_by_one_sweep_al
             let warnings = simulation.summary("").unwrap().guards.warnings;
             let told = warnings.iter().any(|notice| notice.criterion == "contact");
             println!("{}, {young} Pa, {sweeps} sweeps: {held:.4e} J of 1.6e-4, {loss:.2e} J lost", run.name);
-            assert_eq!((told, loss < -1.6e-6), (sweeps == 1, sweeps == 1), "{}, {young}: {loss} J", run.name);
+            assert!(loss > -3.2e-6 && (loss < 0.0) == (sweeps == 1), "{}, {young}: {loss} J", run.name);
+            assert!(!told || loss < -1.5e-6, "{}, {young}: {loss} J, and {warnings:?}", run.name);
             // kinetic energy of the middle of a step
             assert!(held + loss > 1.58e-4 && held + loss < 1.62e-4, "{}, {young}: {held} J", run.name);
         }

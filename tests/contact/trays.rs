@@ -53,13 +53,14 @@ fn ends(folder: &Path, (steps, law): (&str, &str)) -> usize {
 
 #[test]
 #[ignore = "long"]
-fn cubes_in_trays_rest_at_half_the_step() {
+fn few_cubes_in_trays_end_and_none_at_half_the_step() {
     let folder = tempfile::tempdir().unwrap();
     write_tray(&folder.path().join("t.msh"));
     let of = |steps, law| ends(folder.path(), (steps, law));
-    of("", ", friction: 0");
-    of("", ", friction: 0, sweeps: 2");
-    of("", ", friction: 0.1");
-    of("", ", friction: 0, law: Penalty(share: 0.2, damping: 0.3)");
+    // where all shares go at once 20, 3, 13 and 6 do
+    assert!(of("", ", friction: 0") < 8);
+    assert!(of("", ", friction: 0, sweeps: 2") < 3);
+    assert!(of("", ", friction: 0.1") < 4);
+    assert!(of("", ", friction: 0, law: Penalty(share: 0.2, damping: 0.3)") < 3);
     assert_eq!(of("integration: (safety: 0.5),", ", friction: 0"), 0);
 }

@@ -42,6 +42,7 @@ fn world((bodies, who): (&str, &str), friction: f64, more: &str) -> Simulation {
     let world = simulation.world_mut();
     for body in entities::<ContactForce>(world) {
         stick(&mut world.get_mut::<SurfaceTouch>(body).unwrap());
+        split(world, body);
         if let Some(mut touch) = world.get_mut::<FaceTouch>(body) {
             stick(&mut touch);
         }
@@ -55,6 +56,17 @@ fn stick(touch: &mut Reals) {
         let states = [0.0, 1.0, 2.0, 3.0, 5.0, 6.0, 7.0];
         touch.set(MEETING_NUMBERS * point + 4, states[point % states.len()]);
         touch.set(MEETING_NUMBERS * point, 1e-6);
+    }
+}
+
+/// Masses of nodes were split into some shares in the last step; only of who bears a force that is kept.
+fn split(world: &mut World, body: Entity) {
+    let touch = world.get::<SurfaceTouch>(body).unwrap().len();
+    for row in 0..touch / MEETING_NUMBERS {
+        let shares = [0.0, 0.5, 1.5, 4.0][row % 4];
+        world.get_mut::<SurfaceTouch>(body).unwrap().set(MEETING_NUMBERS * row + 8, shares);
+        let mut force = world.get_mut::<ContactForce>(body).unwrap();
+        (0..3).for_each(|axis| force.set(3 * row + axis, 1e-3 * shares));
     }
 }
 

@@ -10,7 +10,7 @@ use super::terminal::{self, Paint};
 use super::wording::{count, counted, other_end, quantity};
 use sinew::components::Block;
 use sinew::components::Cadence;
-use sinew::scene::schema::{Scene, Solver};
+use sinew::scene::schema::{Scene, SearchMethod, Solver};
 use sinew::systems::Registry;
 use sinew::{BackendChoice, Error, Options, Simulation, Summary};
 use std::path::Path;
@@ -74,8 +74,9 @@ fn verdict(simulation: &mut Simulation, advice: Option<&Advice>) -> Result<Strin
             stability::at_start(&summary),
         ),
         Some(sought) => format!(
-            "rest under what acts at {}: at most {}, in the first {} of them loads grow\n",
+            "rest under what acts at {}: {}at most {}, in the first {} of them loads grow\n",
             quantity(simulation.scene().duration, "s"),
+            by_newton(simulation.scene()),
             counted(summary.planned_steps, "pseudo-step"),
             sought.load_steps,
         ),
@@ -85,6 +86,14 @@ fn verdict(simulation: &mut Simulation, advice: Option<&Advice>) -> Result<Strin
     let observed = summary.equilibrium.as_ref().map_or(summary.planned_steps, |sought| sought.load_steps);
     lines += &format!("a run writes: {}\n", outputs(simulation, observed).join(", "));
     Ok(lines)
+}
+
+/// What leads to rest before pseudo-steps do, if anything does.
+fn by_newton(scene: &Scene) -> &'static str {
+    match scene.search() {
+        Some(search) if search.method == SearchMethod::Newton => "by Newton's iterations, and where they find none by ",
+        _ => "",
+    }
 }
 
 /// That a run will not end at `duration`; chosen steps do.

@@ -115,8 +115,15 @@ fn speeds(summary: &Summary, duration: f64, page: &mut Page) {
             page.row("solving", format!("{steps}, {simulated} simulated in {solving}: {speed}"));
         }
         Some(found) => {
-            let steps = counted(summary.steps, "pseudo-step");
-            page.row("solving", format!("{steps} in {solving}; loads grew over the first {}", found.load_steps));
+            // Newton's iterations have all loads at once, and where they arrive these are all steps there were
+            let row = match found.newton_iterations > 0 && summary.steps < found.load_steps {
+                true => format!("{} in {solving}, under all loads", counted(summary.steps, "step")),
+                false => {
+                    let steps = counted(summary.steps, "pseudo-step");
+                    format!("{steps} in {solving}; loads grew over the first {}", found.load_steps)
+                }
+            };
+            page.row("solving", row);
         }
     }
     if summary.steps > 0 {

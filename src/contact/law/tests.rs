@@ -64,6 +64,10 @@ fn momentum_stays_and_energy_is_below_its_bound() {
         let least = if round % 3 == 0 { 0.1 } else { 0.0 };
         let (mut set, masses) = random_set(&mut random, friction, least);
         let sweeps = 1 + round % 5 / 2;
+        // more of them had shares in the last step
+        if round % 4 == 0 {
+            set.shares_before = (0..masses.len() as u32).map(|node| (node, 5.0 * random.f64())).collect();
+        }
         let before = set.clone();
         set.solve(sweeps, &one());
         let momentum = |steps: &[DVec4]| masses.iter().zip(steps).map(|(mass, step)| *step * *mass).sum::<DVec4>();
@@ -98,6 +102,32 @@ fn momentum_stays_and_energy_is_below_its_bound() {
             assert!(contact.pressing >= 0.0 && contact.rubbing.length() <= friction * contact.pressing * (1.0 + 1e-12));
         }
     }
+}
+
+/// What was split into more shares in the last step keeps a part of them, so that what is inside comes out by and by;
+/// more shares than before count at once, and what touches nothing has none.
+#[test]
+fn shares_come_at_once_and_go_by_and_by() {
+    let out = |before: f64| {
+        let mut set = ContactSet {
+            steps: vec![DVec4::ZERO; 2],
+            earlier: vec![DVec4::ZERO; 2],
+            responses: vec![DVec4::new(1.0, 1.0, 1.0, 0.0), DVec4::ZERO],
+            shares_before: vec![(0, before), (1, before)],
+            ..ContactSet::default()
+        };
+        let mut parts = Parts::default();
+        parts.add(0, 1.0);
+        set.add(Contact::new(parts, (DVec3::Z, -1.0, DVec3::ZERO), (0.0, DVec3::ZERO)));
+        set.solve(1, &one());
+        assert!(set.steps[1] == DVec4::ZERO && set.share(1) == 0.0);
+        [set.steps[0].z, set.share(0)]
+    };
+    for before in [0.0, 0.5, 1.0] {
+        assert_eq!(out(before), [1.0, 1.0]);
+    }
+    let [step, share] = out(4.0);
+    assert!((share - 3.0).abs() < 1e-15 && (step - 1.0 / 3.0).abs() < 1e-15, "{share} {step}");
 }
 
 /// What has slipped elastically comes back at most; a law that pushes three times as hard gives more than it can.

@@ -144,7 +144,9 @@ impl<'a> Naming<'a> {
         }
         for tool in content.tools.values_mut() {
             tool.moves.iter_mut().for_each(|part| self.curve(&mut part.curve));
-            tool.port.iter_mut().for_each(|port| self.name(&mut port.name));
+            // what has no name is told of as that
+            let ports = tool.port.iter_mut().filter(|port| !port.name.is_empty());
+            ports.for_each(|port| self.name(&mut port.name));
         }
         for (number, contact) in content.contacts.iter_mut().enumerate() {
             let path = self.path.name("contacts").index(number);
