@@ -302,8 +302,8 @@ pub(in crate::systems) fn note_farther(body: Entity, world: &World) -> (Vec<Frag
 pub(in crate::systems) struct ForeseenNodes {
     /// Four words a node: its row, and three of whoever asks.
     rows: BufferId,
-    /// [`FORESEEN_NUMBERS`] a node: three of whoever asks, the next step, the last step, which must be there already, the
-    /// response to forces, the last step for work that is counted, and one more of whoever asks.
+    /// [`FORESEEN_NUMBERS`] a node: three of whoever asks, the next step, the last step, which must be there already,
+    /// the response to forces, the last step for work that is counted, and one more of whoever asks.
     pub(super) nodes: BufferId,
     /// A [`SurfaceBody`].
     of_body: BufferId,
