@@ -101,4 +101,7 @@ fn ports_of_parts_are_named_as_all_else_in_them() {
     let tools = read(whole, files(), &[]).unwrap().scene.tools;
     let ports: Vec<&str> = tools.values().flat_map(|tool| &tool.port).map(|port| port.name.as_str()).collect();
     assert_eq!(ports, ["left.hand", "right.hand"]);
+    // none is none, and no `left.`
+    let told = brief(whole, files_of(&[("hook.ron", &hook.replace("hand", ""))]), &[]);
+    assert!(told.contains("a port needs a name, by which a program opens it"), "{told}");
 }
