@@ -12,9 +12,9 @@ use tasks::{Begin, Correct, Correction, Forces, Note, Push};
 /// So many contacts are worth the threads; fewer are added up one after the other.
 const WORTH_SHARING: usize = 1024;
 
-/// What a node keeps, from step to step, of the shares that its mass was split into and is not any more. What bears f is
-/// the deeper inside the more shares there are: where these became fewer at once, all of that would come out in a step,
-/// and of a cube in a tray, whose walls touch and let go in turn, with more energy than has gone in.
+/// What a node keeps, from step to step, of the shares that its mass was split into and is not any more. What bears a
+/// load is the deeper inside the more shares there are: where these became fewer at once, all of that would come out in
+/// a step, and of a cube in a tray, whose walls touch and let go in turn, with more energy than has gone in.
 const KEEPS: f64 = 2.0 / 3.0;
 
 /// What is no gain of energy, as a share of what contacts give and take.
