@@ -115,11 +115,13 @@ fn speeds(summary: &Summary, duration: f64, page: &mut Page) {
             page.row("solving", format!("{steps}, {simulated} simulated in {solving}: {speed}"));
         }
         Some(found) => {
-            // Newton's iterations have all loads at once, and where they arrive these are all steps there were
-            let row = match found.newton_iterations > 0 && summary.steps < found.load_steps {
-                true => format!("{} in {solving}, under all loads", counted(summary.steps, "step")),
+            // each iteration that led to rest counts as a step, after one that finds where things are
+            let (stepped, iterations) =
+                (summary.steps.saturating_sub(found.newton_iterations), found.newton_iterations);
+            let row = match iterations > 0 && stepped <= 1 {
+                true => format!("{} in {solving}", counted(iterations, "Newton iteration")),
                 false => {
-                    let steps = counted(summary.steps, "pseudo-step");
+                    let steps = counted(stepped, "pseudo-step");
                     format!("{steps} in {solving}; loads grew over the first {}", found.load_steps)
                 }
             };
