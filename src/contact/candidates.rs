@@ -44,8 +44,6 @@ pub(super) type Nearest = (u32, (OnTriangle, f64));
 #[derive(Clone, Debug, Default)]
 pub struct Kept {
     pub(super) nearest: Vec<Nearest>,
-    /// Normals of the triangles around a node, and by how much each may turn at most.
-    pub(super) around: Vec<(DVec3, f64)>,
 }
 
 /// Where triangles are nearest to a point: of those of its list that are looked at found beforehand.

@@ -85,13 +85,15 @@ impl Surfaces {
     /// another or behind a rim, and the point is in front of that one, as for most. Whether that is all there is to it.
     /// Nothing has come nearer since lists were made than by `nearer`, and faces are looked at that are no farther than
     /// `reach` (m), nor later by `more`; `edge` is the length of an edge (m), of a triangle's body or the point's. As
-    /// long as nodes hardly move, the others stay where they are, and one is looked at alone.
+    /// long as nodes hardly move, the others stay where they are, and one is looked at alone; `moved` tells how far they
+    /// may while the shortlist holds (m).
     #[inline(always)] // with the instructions of whoever asks
     pub fn faced_at_a_glance(
         &self,
         (now, point, (short, listed)): (Placed<'_>, &Point, (&mut Shortlist, &[u32])),
         (nearer, (reach, more), edge): (f64, (impl Fn(u32) -> f64, f64), impl Fn(u32) -> f64),
-        (lately, faced, own): (Lately, &mut Faced, &mut Own),
+        (lately, moved): (Lately, impl FnOnce() -> f64),
+        (faced, own): (&mut Faced, &mut Own),
     ) -> bool {
         let Some((triangles, first)) = short.triangles_now(lately) else { return false };
         *faced = Faced { wakes: short.wakes, ..Faced::NOTHING };
@@ -110,9 +112,22 @@ impl Surfaces {
             let is_alone = glance.stays_alone((triangles, &seen), place, (lately.farther, more));
             short.note_alone(is_alone.then_some(number), lately);
         }
-        let rims = short.may_have_rim(number).then_some(listed);
-        faced.first = glance.in_front((triangle, found), (rims, short.is_turned_away(number)), own);
+        let ask = || {
+            if !short.is_asked(number) {
+                short.note_asked(number, self.ask((now, point), triangle, moved()));
+            }
+            (short.may_have_rim(number).then_some(listed), short.is_turned_away(number))
+        };
+        faced.first = glance.in_front((triangle, found), ask, own);
         true
+    }
+
+    /// Whether a triangle stays turned away from a point, a node, and whether it may have a rim, as long as no two
+    /// nodes move against each other by more than a distance (m).
+    #[inline(never)] // all points would make room for what few need
+    fn ask(&self, (now, point): (Placed<'_>, &Point), triangle: u32, moved: f64) -> [bool; 2] {
+        let is_turned_away = point.triangle.is_none() && self.stays_turned_away(now, point.nodes[0], triangle, moved);
+        [is_turned_away, self.may_have_rim(now, triangle, moved)]
     }
 
     /// Whether a place is outside of a triangle that is nearest at a part of it: then it is so as far as that is away,
@@ -140,7 +155,7 @@ impl Surfaces {
         (short, stays): (&mut Shortlist, Stays),
         (faced, kept): (&mut Faced, &mut Kept),
     ) {
-        let Kept { nearest, around } = kept;
+        let Kept { nearest } = kept;
         let at = point.place(now.places);
         let mut candidates = Candidates::new((self, now), at, listed, nearest);
         let (triangles, reach, edge) = (listed.triangles, &reach, &edge);
@@ -178,22 +193,7 @@ impl Surfaces {
                     true => listed.distance(place),
                     false => candidates.nearest(place).1 - listed.nearer,
                 };
-                around.clear();
-                let mut of_node = None;
-                if point.triangle.is_none() {
-                    let of = |&own: &u32| (self.normal_now(now, own), self.turns(now, own, stays.moved));
-                    around.extend(self.around(point.nodes[0]).iter().map(of));
-                    of_node = Some(self.turns_of_node(now, point.nodes[0], around, stays.moved));
-                }
-                let turned = |place: usize| {
-                    let triangle = listed.triangles[place];
-                    let (normal, turn) = (self.normal_now(now, triangle), self.turns(now, triangle, stays.moved));
-                    let cosine = |(own, of_own): &(DVec3, f64)| own.dot(normal) + of_own + turn + of_own * turn;
-                    let all_stay_so = || around.iter().all(|of_own| cosine(of_own) < 0.0);
-                    of_node.is_some_and(|of_node| all_stay_so() || cosine(&of_node) < TURNED_AWAY)
-                };
-                let rims = |place: usize| self.may_have_rim(now, listed.triangles[place], stays.moved);
-                *short = Shortlist::of(listed.triangles, away, nearest, (turned, rims));
+                *short = Shortlist::of(listed.triangles, away, nearest);
                 // what stays away is in nobody's way now
                 for (place, triangle) in listed.triangles.iter().enumerate() {
                     if !listed.is_far(place) && short.triangles().is_none_or(|left| left.contains(triangle)) {
@@ -250,6 +250,16 @@ impl Surfaces {
         let [a, b, c] = self.corners(now.places, triangle);
         let (one, other) = (b - a, c - a);
         2.0 * moved * (one.length() + other.length() + moved) / one.cross(other).length()
+    }
+
+    /// Whether a triangle stays turned away from all triangles around a node, or from its own normal, likewise.
+    fn stays_turned_away(&self, now: Placed<'_>, node: u32, triangle: u32, moved: f64) -> bool {
+        let of = |triangle: u32| (self.normal_now(now, triangle), self.turns(now, triangle, moved));
+        let (normal, turn) = of(triangle);
+        let cosine = |(own, of_own): &(DVec3, f64)| own.dot(normal) + of_own + turn + of_own * turn;
+        let around: SmallVec<[(DVec3, f64); 8]> = self.around(node).iter().map(|&own| of(own)).collect();
+        around.iter().all(|of_own| cosine(of_own) < 0.0)
+            || cosine(&self.turns_of_node(now, node, &around, moved)) < TURNED_AWAY
     }
 
     /// The unit normal of a node, and by how much it changes at most, likewise: of triangles around it with these

@@ -13,6 +13,8 @@ pub struct Shortlist {
     pub(super) wakes: f64,
     /// Their numbers, ascending.
     triangles: [u32; MOST],
+    /// Of which of them is known what the next two say: a bit each.
+    asked: u16,
     /// Which of them stay turned away from all around the point, a node: a bit each.
     turned: u16,
     /// Which of them may have a rim: a bit each.
@@ -47,6 +49,7 @@ impl Shortlist {
     pub const UNKNOWN: Self = Self {
         wakes: f64::INFINITY,
         triangles: [0; MOST],
+        asked: 0,
         turned: 0,
         rims: 0,
         count: NONE,
@@ -54,14 +57,9 @@ impl Shortlist {
         until: f32::NEG_INFINITY,
     };
 
-    /// Of a list of triangles, without those that stay away, each of which is so far (m), and with which of the others
-    /// stay turned away, and which may have a rim; all by their places in the list.
-    pub(super) fn of(
-        triangles: &[u32],
-        away: impl Fn(usize) -> bool,
-        nearest: impl Fn(usize) -> f64,
-        (turned, rims): (impl Fn(usize) -> bool, impl Fn(usize) -> bool),
-    ) -> Self {
+    /// Of a list of triangles, without those that stay away, each of which is so far (m); both by their places in the
+    /// list.
+    pub(super) fn of(triangles: &[u32], away: impl Fn(usize) -> bool, nearest: impl Fn(usize) -> f64) -> Self {
         let mut short = Self { count: 0, ..Self::UNKNOWN };
         for (place, &triangle) in triangles.iter().enumerate() {
             if away(place) {
@@ -70,8 +68,6 @@ impl Shortlist {
             }
             let Some(free) = short.triangles.get_mut(usize::from(short.count)) else { return Self::UNKNOWN };
             *free = triangle;
-            short.turned |= u16::from(turned(place)) << short.count;
-            short.rims |= u16::from(rims(place)) << short.count;
             short.count += 1;
         }
         short
@@ -115,6 +111,19 @@ impl Shortlist {
     /// Forgets that, for it is counted anew how far nodes go.
     pub fn count_anew(&mut self) {
         (self.alone, self.until) = (NONE, f32::NEG_INFINITY);
+    }
+
+    /// Whether it is known of the one of that number what the next two ask.
+    #[inline(always)] // likewise
+    pub(super) fn is_asked(&self, number: usize) -> bool {
+        self.asked >> number & 1 == 1
+    }
+
+    /// Notes it: of most nobody asks as long as a shortlist holds.
+    pub(super) fn note_asked(&mut self, number: usize, [is_turned_away, may_have_rim]: [bool; 2]) {
+        self.asked |= 1 << number;
+        self.turned |= u16::from(is_turned_away) << number;
+        self.rims |= u16::from(may_have_rim) << number;
     }
 
     /// Whether the one of that number stays turned away from all around the point, a node.

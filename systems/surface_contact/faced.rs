@@ -159,13 +159,13 @@ impl Looking<'_> {
             let reach = |triangle: u32| reaches[body(triangle)];
             let edge = |triangle: u32| meetings[body(triangle)].as_ref().map_or(contacts.edge, |meeting| meeting.edge);
             let at_a_glance = (self.nearer, (reach, self.stays.reach), edge);
-            let seen = (self.lately, &mut faced, &mut own);
+            let moved = || surface.neighbourhoods.stays(place) + self.stays.moved;
             let triangles = surface.lists.triangles(place);
-            if !surface.triangles.faced_at_a_glance((now, point, (short, triangles)), at_a_glance, seen) {
+            let (of_point, seen) = ((now, point, (&mut *short, triangles)), (&mut faced, &mut own));
+            if !surface.triangles.faced_at_a_glance(of_point, at_a_glance, (self.lately, moved), seen) {
                 let distances = surface.lists.distances(place);
                 let listed = Listed { triangles, distances, nearer: self.nearer, farthest: self.farthest };
-                let moved = surface.neighbourhoods.stays(place) + self.stays.moved;
-                let (stays, kept) = (Stays { moved, ..self.stays }, (&mut faced, &mut *kept));
+                let (stays, kept) = (Stays { moved: moved(), ..self.stays }, (&mut faced, &mut *kept));
                 surface.triangles.faced((now, point), listed, (reach, edge), (short, stays), kept);
             }
             if point.triangle.is_some() {

@@ -242,6 +242,7 @@ fn what_is_no_skin_is_told() {
             ("net.obj".to_string(), net().into_bytes()),
             ("far.obj".to_string(), b"v 0 0 0\nv 1e9 0 0\nv 0 1 0\nf 1 2 3\n".to_vec()),
             ("text.obj".to_string(), b"nothing".to_vec()),
+            ("text.png".to_string(), b"nothing".to_vec()),
         ]);
         let scene = SceneFile::from_memory("s.ron", &text, files, &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
         let mut found = scene.diagnostics();
@@ -257,6 +258,7 @@ fn what_is_no_skin_is_told() {
     near(told("(file: \"net.obj\", scale: 0)", ""), "`scale` must be above 0, found 0");
     near(told("(file: \"net.obj\", image: \"net.png\")", ""), "there is no file `net.png`");
     near(told("(file: \"net.obj\", image: \"net.obj\")", ""), "PNG (.png)");
+    near(told("(file: \"net.obj\", image: \"text.png\")", ""), "`text.png` is no picture that can be read");
     let unknown = SceneFile::from_memory(
         "s.ron",
         "(bodies: {\"b\": (skin: (file: \"a.obj\", also: Stl))})",

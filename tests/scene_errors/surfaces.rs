@@ -36,6 +36,10 @@ fn what_is_wrong_with_surfaces_is_told_with_what_is_allowed() {
             "Between(bodies: (\"a\", \"b\"), friction: 0.3, static_friction: 0.2)",
             "5: error: `static_friction` is 0.2, and `friction` is 0.3 | what sticks is held at least as well as what slides",
         ),
+        (
+            "Between(bodies: (\"a\", \"b\"), friction: 30)",
+            "5: warning: friction of 30: what touches hardly ever slides | it is a coefficient, and no percentage: 30 % is 0.3",
+        ),
     ];
     for (contact, wanted) in cases {
         let found = told(contact, "(0, 0, 0.11)");

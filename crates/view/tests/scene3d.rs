@@ -183,8 +183,8 @@ fn a_picture_is_seen_on_a_skin_at_its_texture_coordinates() {
     assert!(green < blue && some > 5000 && some.abs_diff(others) < some / 5, "{green} {some} {blue} {others}");
     let [bare, _] = both(&mut scene3d, &state, &Settings { skins: false, ..Settings::default() }, &above);
     assert_eq!((colour(&bare, 1).1, colour(&bare, 2).1), (0, 0));
-    // a picture that is not there is told, and the skin is drawn without
-    std::fs::write(folder.path().join("top.png"), "no picture").unwrap();
+    // a picture that cannot be read is told, and the skin is drawn without
+    std::fs::write(folder.path().join("top.png"), b"\x89PNG\r\n\x1a\nno picture").unwrap();
     let state = state_of(SceneFile::from_text("cube.ron", &cube, folder.path(), &[]).unwrap(), Vec::new());
     let mut scenery = Scenery::default();
     scenery.follow(&state);

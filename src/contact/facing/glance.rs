@@ -90,13 +90,13 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Glance<'_, R, E> {
         })
     }
 
-    /// What the point faces of a triangle that is looked at alone. `rims` are the triangles that may be near where it
-    /// may have a rim.
+    /// What the point faces of a triangle that is looked at alone. It is asked for the triangles that may be near where
+    /// it may have a rim, and whether it stays turned away from all around the point.
     #[inline(always)]
-    pub fn in_front(
+    pub fn in_front<'r>(
         &self,
         (triangle, OnTriangle { at: nearest, weights, .. }): (u32, OnTriangle),
-        (rims, is_turned_away): (Option<&[u32]>, bool),
+        ask: impl FnOnce() -> (Option<&'r [u32]>, bool),
         own: &mut Own,
     ) -> Option<Facing> {
         let Self { surfaces, now, point, at, .. } = *self;
@@ -106,7 +106,7 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Glance<'_, R, E> {
             return None;
         }
         let mut facing = Facing { triangle, weights, at: nearest, normal, gap, part: 0 };
-        let mut of_point = None;
+        let (mut of_point, (rims, is_turned_away)) = (None, ask());
         if let Some(listed) = rims {
             let ask = || *of_point.insert(own.of(surfaces, now, point));
             let within = ((self.reach)(triangle), (self.edge)(triangle));

@@ -3,13 +3,14 @@
 use super::*;
 use crate::contact::candidates::ON_IT;
 
-/// What a point faces by its shortlist, which is known, and whether that is seen at a glance: then the same.
+/// What a point faces by its shortlist, which is known and serves while nodes move so far (m), and whether that is seen
+/// at a glance: then the same.
 pub(in crate::contact) fn by_shortlist(
     surfaces: &Surfaces,
     (now, point): (Placed<'_>, &Point),
     listed: Listed<'_>,
     reach: &impl Fn(u32) -> f64,
-    short: &Shortlist,
+    (short, moved): (&mut Shortlist, f64),
 ) -> (Faced, bool) {
     let mut same = *short;
     let [mut chosen, mut seen] = [Faced::NOTHING; 2];
@@ -17,9 +18,10 @@ pub(in crate::contact) fn by_shortlist(
     surfaces.faced((now, point), listed, (reach, |_| 1.0), (&mut same, Stays::default()), kept);
     // with normals that are known, and with those that are asked for
     let mut is_all = [now.normals, &[][..]].into_iter().map(|normals| {
-        let of = (Placed { normals, ..now }, point, (&mut short.clone(), listed.triangles));
-        let seen = (Lately { gone: f64::INFINITY, farther: 0.0 }, &mut seen, &mut Own::default());
-        surfaces.faced_at_a_glance(of, (listed.nearer, (reach, 0.0), |_| 1.0), seen)
+        let of = (Placed { normals, ..now }, point, (&mut *short, listed.triangles));
+        let lately = (Lately { gone: f64::INFINITY, farther: 0.0 }, || moved);
+        let seen = (&mut seen, &mut Own::default());
+        surfaces.faced_at_a_glance(of, (listed.nearer, (reach, 0.0), |_| 1.0), lately, seen)
     });
     let is_all = is_all.all(|is_all| is_all);
     assert!(!is_all || seen == chosen, "{seen:?}, {chosen:?}");
@@ -44,7 +46,7 @@ pub(in crate::contact) fn faced(
     let kept = (&mut found, &mut Kept::default());
     surfaces.faced((now, point), listed, (&reach, |_| 1.0), (&mut short, stays), kept);
     // what the shortlist leaves out changes nothing
-    assert_eq!(by_shortlist(surfaces, (now, point), listed, &reach, &short).0, found);
+    assert_eq!(by_shortlist(surfaces, (now, point), listed, &reach, (&mut short, stays.moved)).0, found);
     // forces act along one line, but for what counts as being on a face
     for facing in [&found.first, &found.second].into_iter().flatten() {
         let corners = surfaces.corners(places, facing.triangle).into_iter().zip(facing.weights);
@@ -251,7 +253,8 @@ fn beside_rims_and_at_rims_a_glance_tells() {
             if !short.is_known() {
                 continue;
             }
-            let (same, at_a_glance) = by_shortlist(&surfaces, (now, &point), listed, &|_| 0.05, &short);
+            let of_short = (&mut short, stays.moved);
+            let (same, at_a_glance) = by_shortlist(&surfaces, (now, &point), listed, &|_| 0.05, of_short);
             assert_eq!((same.first, same.second), (found.first, found.second));
             let place = places[node as usize];
             let is_beyond = place.min(DVec3::ONE - place).truncate().min_element() < 0.0;
@@ -295,8 +298,8 @@ fn one_triangle_alone_tells_what_all_tell_while_little_moves() {
         let mut seen = Faced::NOTHING;
         let mut glance = |short: &mut Shortlist, places: &[DVec3], gone: f64| {
             let of = (Placed { places, normals: &[] }, &point, (short, listed.triangles));
-            let told = (Lately { gone, farther }, &mut seen, &mut Own::default());
-            surfaces.faced_at_a_glance(of, (0.0, (reach, stays.reach), edge), told).then_some(seen)
+            let (lately, told) = ((Lately { gone, farther }, || stays.moved), (&mut seen, &mut Own::default()));
+            surfaces.faced_at_a_glance(of, (0.0, (reach, stays.reach), edge), lately, told).then_some(seen)
         };
         let (mut short, _) = of_all(&places);
         let gone = 0.99 * farther;

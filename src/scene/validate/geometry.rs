@@ -10,18 +10,20 @@ use crate::scene::schema::{AccuracyReference, MeshSource, Start};
 use crate::scene::suggest::{choice, list};
 use crate::scene::syntax::Path;
 
-/// What mesh files may end in.
-/// Files of a kind: what they are called, how their names end, and what the formats are.
+/// Files of a kind: what they are called, how their names end, what the formats are, and what they begin with, where that
+/// tells.
 pub(super) struct KindOfFile {
     what: &'static str,
     endings: &'static [&'static str],
     formats: &'static str,
+    begins: &'static [u8],
 }
 
 const MESHES: KindOfFile = KindOfFile {
     what: "mesh file",
     endings: &["msh", "vtk", "vtu"],
     formats: "Gmsh (.msh), legacy VTK (.vtk), VTU (.vtu)",
+    begins: &[],
 };
 
 /// Files of triangles that are tools.
@@ -29,10 +31,12 @@ pub(super) const TOOLS: KindOfFile = KindOfFile {
     what: "surface file",
     endings: &["stl", "obj", "ply", "gltf", "glb"],
     formats: "STL (.stl), OBJ (.obj), PLY (.ply), glTF (.gltf, .glb)",
+    begins: &[],
 };
 
 /// Pictures that skins have on them.
-const IMAGES: KindOfFile = KindOfFile { what: "picture", endings: &["png"], formats: "PNG (.png)" };
+const IMAGES: KindOfFile =
+    KindOfFile { what: "picture", endings: &["png"], formats: "PNG (.png)", begins: b"\x89PNG\r\n\x1a\n" };
 
 pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
     for (name, body) in &file.scene.bodies {
@@ -209,7 +213,8 @@ fn mesh_file(file: &SceneFile, validator: &mut Validator, path: &Path, name: &st
 
 /// Whether a file that the scene names can be one of a kind.
 pub(super) fn named_file(file: &SceneFile, validator: &mut Validator, path: &Path, name: &str, kind: &KindOfFile) {
-    let KindOfFile { what, endings, formats } = *kind;
+    let KindOfFile { what, endings, formats, begins } = *kind;
+    let begins_so = || begins.is_empty() || file.bytes(name, u64::MAX).is_ok_and(|bytes| bytes.starts_with(begins));
     let (found, full, mut there) = match file.file(name).and_then(|full| Ok((full, file.look_up(name)?))) {
         Ok((full, (found, there))) => (found, full, there),
         Err(outside) => return tell_outside(validator, path, &outside),
@@ -241,7 +246,7 @@ pub(super) fn named_file(file: &SceneFile, validator: &mut Validator, path: &Pat
             }
             diagnostic.notes(notes);
         }
-    } else if !endings.contains(&ending.as_str()) {
+    } else if !endings.contains(&ending.as_str()) || !begins_so() {
         validator
             .out
             .error_at(path, format!("`{name}` is no {what} that can be read"))

@@ -5,6 +5,7 @@ mod analysis;
 mod attachment;
 mod elastic_law;
 mod free;
+mod friction;
 mod geometry;
 mod limits;
 mod material;

@@ -2,7 +2,7 @@
 
 use super::geometry::{TOOLS, named_file};
 use super::names::{body_named, touched};
-use super::{Validator, scene, select, show};
+use super::{Validator, friction, scene, select, show};
 use crate::math::turned;
 use crate::scene::limits::{MOST_BURST, MOST_SWEEPS, MOST_TURNS, TOOLS_OF_A_BODY};
 use crate::scene::load::SceneFile;
@@ -201,7 +201,7 @@ fn contacts(scene_: &Scene, validator: &mut Validator) {
     let mut of_body: BTreeMap<Option<&String>, usize> = BTreeMap::new();
     for (number, contact) in scene_.contacts.iter().enumerate() {
         let path = scene("contacts").index(number);
-        friction(scene_, validator, &path, contact);
+        friction::validate(scene_, validator, &path, contact);
         law(scene_, validator, &path.name("law"), contact);
         let Contact::Tool { tool, body, on, .. } = contact else {
             surfaces(scene_, validator, &path, contact);
@@ -313,39 +313,6 @@ fn takers(scene_: &Scene, validator: &mut Validator) {
             let message = format!("at most {TOOLS_OF_A_BODY} tools may take elements of a body");
             validator.out.error_at(scene("removal").index(number), message);
         }
-    }
-}
-
-fn friction(scene_: &Scene, validator: &mut Validator, path: &Path, contact: &Contact) {
-    let [sticking, sliding] = contact.friction();
-    validator.not_negative(&path.name("friction"), sliding, "");
-    if sticking < sliding {
-        validator.not_negative(&path.name("static_friction"), sticking, "");
-        let message = format!("`static_friction` is {}, and `friction` is {}", show(sticking), show(sliding));
-        validator
-            .out
-            .error_at(path.name("static_friction"), message)
-            .note("what sticks is held at least as well as what slides");
-    }
-    if sticking.max(sliding) <= 0.0 {
-        return;
-    }
-    if scene_.is_static() {
-        let told = validator
-            .out
-            .warn_at(path.name("friction"), "rest with friction depends on the way there, and this is one of many")
-            .note("a transient analysis goes the way that the scene tells");
-        if !scene_.is_static_by_newton() {
-            told.note("few `load_steps` leave behind what friction carries: take some 400 for each edge of its way");
-        }
-    }
-    let crosses = matches!(contact, Contact::Between { edges: true, .. } | Contact::Itself { edges: true, .. });
-    if scene_.is_implicit() && crosses {
-        let message = "in implicit steps what should stick slides where edges cross, the faster the shorter the step";
-        validator
-            .out
-            .warn_at(path.name("edges"), message)
-            .note("leave `edges` out, or take explicit steps, in which such edges creep a little");
     }
 }
 
