@@ -8,7 +8,7 @@ use glam::DVec3;
 use smallvec::{SmallVec, smallvec};
 
 /// Flanks of a rim where the cosine between the normals is below this (60°).
-const RIM: f64 = 0.5;
+pub(super) const RIM: f64 = 0.5;
 
 /// A face lies flush with one of a point's own where the cosine between the normals is below this (8°), and that looks
 /// at it where it is below the second (60°).

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::contact::candidates::ON_IT;
+use crate::contact::rims::RIM;
 
 /// What a point faces by its shortlist, which is known and serves while nodes move so far (m), and whether that is seen
 /// at a glance: then the same.
@@ -323,4 +324,42 @@ fn one_triangle_alone_tells_what_all_tell_while_little_moves() {
         assert!(all.is_some_and(|(all, _)| all.len() > 1));
     }
     assert!(alone > 100 && told > alone / 2, "{alone} {told}");
+}
+
+/// A floor so rough that there are rims and none, and above it four triangles around a node, turned anyhow: what is
+/// asked of a triangle holds however nodes move that it allows for.
+#[test]
+fn what_is_asked_of_a_triangle_holds_while_nodes_move() {
+    let mut random = fastrand::Rng::with_seed(7);
+    let cut = |node: u32| [[node, node + 1, node + 6], [node, node + 6, node + 5]];
+    let floor = (0..20).filter(|node| node % 5 < 4).flat_map(cut);
+    let triangles: Vec<[u32; 3]> = floor.chain((0..4).map(|i| [25, 26 + i, 26 + (i + 1) % 4])).collect();
+    let surfaces = Surfaces::new(30, triangles, [vec![0; 32], vec![1; 4]].concat(), vec![0.5; 36]);
+    let (point, moved) = (Point::node(1, 25), 0.02);
+    let [mut away, mut facing, mut smooth, mut rims] = [0; 4];
+    for round in 0..4000 {
+        let mut vector = |size: f64| size * (DVec3::new(random.f64(), random.f64(), random.f64()) - 0.5);
+        let on_floor = |node: u32| DVec3::new(f64::from(node % 5), f64::from(node / 5), 0.0);
+        let mut before: Vec<DVec3> = (0..25).map(|node| on_floor(node) + vector(0.8)).collect();
+        let (at, [one, other]) = (DVec3::new(2.0, 2.0, 1.0) + vector(1.0), [vector(2.0), vector(2.0)]);
+        before.extend([DVec3::ZERO, one, other, -one, -other].map(|off| at + off + vector(0.2)));
+        let triangle = round % 32;
+        let now = Placed { places: &before, normals: &[] };
+        let [is_turned_away, may_have_rim] = surfaces.ask((now, &point), triangle, moved);
+        let counted = if is_turned_away { &mut away } else { &mut facing };
+        *counted += 1;
+        let counted = if may_have_rim { &mut rims } else { &mut smooth };
+        *counted += 1;
+        for _ in 0..20 {
+            let after: Vec<DVec3> = before.iter().map(|&place| place + vector(moved / 3.0_f64.sqrt())).collect();
+            let now = Placed { places: &after, normals: &[] };
+            let (normal, own) = (surfaces.normal(&after, triangle), surfaces.normal_of_node(now, 25));
+            assert!(!is_turned_away || normal.dot(own) < TURNED_AWAY, "{round}: {}", normal.dot(own));
+            let corners = surfaces.triangles[triangle as usize];
+            let around = corners.iter().flat_map(|&node| surfaces.around(node));
+            let least = around.map(|&beside| normal.dot(surfaces.normal(&after, beside))).fold(1.0, f64::min);
+            assert!(may_have_rim || least >= RIM, "{round}: {least}");
+        }
+    }
+    assert!(away.min(facing).min(smooth).min(rims) > 300, "{away} {facing} {smooth} {rims}");
 }
