@@ -1,15 +1,15 @@
 //! The face that a point faces.
 
 mod glance;
+mod stays;
 
 use super::candidates::{Candidates, Kept, Listed, ON_IT};
 use super::shortlist::{Lately, MOST, Shortlist, Stays};
-use super::surfaces::{OF_ANGLES, Placed, Point, Surfaces};
+use super::surfaces::{Placed, Point, Surfaces};
 use crate::mesh::OnTriangle;
 use glam::DVec3;
 use glance::{Glance, Only};
 use smallvec::SmallVec;
-use std::f64::consts::FRAC_PI_2;
 
 /// Surfaces face one another where the cosine between their normals is below this.
 pub const TURNED_AWAY: f64 = 0.2;
@@ -85,8 +85,8 @@ impl Surfaces {
     /// another or behind a rim, and the point is in front of that one, as for most. Whether that is all there is to it.
     /// Nothing has come nearer since lists were made than by `nearer`, and faces are looked at that are no farther than
     /// `reach` (m), nor later by `more`; `edge` is the length of an edge (m), of a triangle's body or the point's. As
-    /// long as nodes hardly move, the others stay where they are, and one is looked at alone; `moved` tells how far they
-    /// may while the shortlist holds (m).
+    /// long as nodes hardly move, the others stay where they are, and one is looked at alone; `moved` tells how far
+    /// they may while the shortlist holds (m).
     #[inline(always)] // with the instructions of whoever asks
     pub fn faced_at_a_glance(
         &self,
@@ -120,14 +120,6 @@ impl Surfaces {
         };
         faced.first = glance.in_front((triangle, found), ask, own);
         true
-    }
-
-    /// Whether a triangle stays turned away from a point, a node, and whether it may have a rim, as long as no two
-    /// nodes move against each other by more than a distance (m).
-    #[inline(never)] // all points would make room for what few need
-    fn ask(&self, (now, point): (Placed<'_>, &Point), triangle: u32, moved: f64) -> [bool; 2] {
-        let is_turned_away = point.triangle.is_none() && self.stays_turned_away(now, point.nodes[0], triangle, moved);
-        [is_turned_away, self.may_have_rim(now, triangle, moved)]
     }
 
     /// Whether a place is outside of a triangle that is nearest at a part of it: then it is so as far as that is away,
@@ -242,40 +234,6 @@ impl Surfaces {
             Some(triangle) => self.normal_now(now, triangle),
             None => self.normal_of_node(now, point.nodes[0]),
         }
-    }
-
-    /// By how much the unit normal of a triangle with sides a, b and area A changes at most, as long as no two nodes
-    /// move against each other by more than a distance m: 2 m (a + b + m)/2A.
-    pub(super) fn turns(&self, now: Placed<'_>, triangle: u32, moved: f64) -> f64 {
-        let [a, b, c] = self.corners(now.places, triangle);
-        let (one, other) = (b - a, c - a);
-        2.0 * moved * (one.length() + other.length() + moved) / one.cross(other).length()
-    }
-
-    /// Whether a triangle stays turned away from all triangles around a node, or from its own normal, likewise.
-    fn stays_turned_away(&self, now: Placed<'_>, node: u32, triangle: u32, moved: f64) -> bool {
-        let of = |triangle: u32| (self.normal_now(now, triangle), self.turns(now, triangle, moved));
-        let (normal, turn) = of(triangle);
-        let cosine = |(own, of_own): &(DVec3, f64)| own.dot(normal) + of_own + turn + of_own * turn;
-        let around: SmallVec<[(DVec3, f64); 8]> = self.around(node).iter().map(|&own| of(own)).collect();
-        around.iter().all(|of_own| cosine(of_own) < 0.0)
-            || cosine(&self.turns_of_node(now, node, &around, moved)) < TURNED_AWAY
-    }
-
-    /// The unit normal of a node, and by how much it changes at most, likewise: of triangles around it with these
-    /// normals n and by how much they turn. The sum N of a n, a the angles, changes by E = Σ δa + (a + δa) δn at most,
-    /// where a turns by no more than its sides of lengths b and c do, δa = π/2 m (1/b + 1/c), and what is as long as
-    /// one turns by 2 E/|N|; with what angles are known to.
-    fn turns_of_node(&self, now: Placed<'_>, node: u32, around: &[(DVec3, f64)], moved: f64) -> (DVec3, f64) {
-        let (mut sum, mut change) = (DVec3::ZERO, 0.0);
-        for (&triangle, &(normal, turn)) in self.around(node).iter().zip(around) {
-            let (angle, [b, c]) = self.angle_at(now.places, triangle, node);
-            // what is shorter may turn anywhere
-            let of_angle = if moved < f64::min(b, c) { FRAC_PI_2 * moved * (1.0 / b + 1.0 / c) } else { f64::INFINITY };
-            sum += normal * angle;
-            change += of_angle + (angle + of_angle) * turn;
-        }
-        (sum.normalize_or_zero(), 2.0 * change / sum.length() + OF_ANGLES)
     }
 
     /// Whether a direction is turned away from the normals of all triangles around a node: then it is from the node's

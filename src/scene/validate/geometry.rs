@@ -10,8 +10,8 @@ use crate::scene::schema::{AccuracyReference, MeshSource, Start};
 use crate::scene::suggest::{choice, list};
 use crate::scene::syntax::Path;
 
-/// Files of a kind: what they are called, how their names end, what the formats are, and what they begin with, where that
-/// tells.
+/// Files of a kind: what they are called, how their names end, what the formats are, and what they begin with, where
+/// that tells.
 pub(super) struct KindOfFile {
     what: &'static str,
     endings: &'static [&'static str],
