@@ -40,6 +40,8 @@ pub(super) struct Motion {
     pub gone: f64,
     /// How far the fastest node went in the last step, at most (m).
     pub largest: f64,
+    /// How far nodes went in it, at least and at most, along each axis (m).
+    last: [DVec3; 2],
     /// Steps since it was looked where nodes are, and what rounding may have added to each (m).
     added_up: u32,
     rounding: f64,
@@ -84,7 +86,8 @@ impl Motion {
         self.shortlists.set(&self.runs, bodies);
     }
 
-    /// Takes the last step into account: nodes have come nearer by what they went apart in it, at most. Where
+    /// Takes the last step into account: nodes have come nearer by what they went apart in it, at most. Along axes that
+    /// are told `boundary` has written the next step over that one, which was seen when it was the next. Where
     /// displacements are not what steps make of them (on the way to equilibrium, in implicit steps, after a change
     /// of the step, where somebody else has written them), or many steps have been added up, it is looked where
     /// nodes are.
@@ -107,7 +110,8 @@ impl Motion {
         }
         self.largest = steps.longest();
         self.added_up += 1;
-        let apart = steps.apart() + self.rounding;
+        let seen = std::mem::replace(&mut self.last, steps.bounds());
+        let apart = apart(seen, self.last) + self.rounding;
         self.lists.moved += apart;
         self.shortlists.moved += apart;
         self.gone = if as_stepped { self.gone + apart } else { f64::INFINITY };
@@ -156,7 +160,15 @@ impl Mark {
     }
 }
 
+/// How far apart vectors are at most that lie within any of two boxes, and a little more.
+fn apart([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> f64 {
+    (b.max(d) - a.min(c)).length() * (1.0 + ROUNDING)
+}
+
 /// The numbers of vectors in these rows.
 fn numbers(rows: &Range<u32>) -> Range<usize> {
     3 * rows.start as usize..3 * rows.end as usize
 }
+
+#[cfg(test)]
+mod tests;

@@ -51,12 +51,14 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Glance<'_, R, E> {
             }
         }
         let mut beside = (0..triangles.len()).filter(|place| beside >> place & 1 == 1);
-        if beside.all(|place| self.is_told((triangles, seen), place)) { only } else { Only::More }
+        let away = if let Only::One(one, _) = only { seen[one].0 } else { 0.0 };
+        if beside.all(|place| self.is_told((triangles, seen), place, away)) { only } else { Only::More }
     }
 
-    /// Whether a triangle whose rim is what is nearest matters to nobody: another that shares it is nearer.
+    /// Whether a triangle whose rim is what is nearest matters to nobody: another that shares it is nearer. The one
+    /// that matters is so far `away` (m): who is behind that, and nearer outside of another, is not in the body.
     #[inline(always)]
-    fn is_told(&self, (triangles, seen): (&[u32], &[(f64, usize)]), place: usize) -> bool {
+    fn is_told(&self, (triangles, seen): (&[u32], &[(f64, usize)]), place: usize, away: f64) -> bool {
         let Self { surfaces, now, at, .. } = *self;
         let (triangle, (distance, part)) = (triangles[place], seen[place]);
         let farthest = NEARER * distance;
@@ -64,7 +66,9 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Glance<'_, R, E> {
         // those that show it are not all in shortlists; beyond a rim there are none, and what is outside there is so as
         // far as it is away
         others.any(|(&other, _)| surfaces.shares_part(other, triangle, part))
-            || distance > (self.reach)(triangle) && surfaces.is_outside((now, at), (triangle, part))
+            || distance > (self.reach)(triangle)
+                && distance > (1.0 + ON_IT) * away
+                && surfaces.is_outside((now, at), (triangle, part))
             || surfaces.goes_on_nearer((now.places, at), (triangle, part), farthest)
     }
 
