@@ -102,7 +102,7 @@ pub(super) fn face<M: Send>(
     reaches.clear();
     let meetings = contacts.meetings.iter();
     reaches.extend(meetings.map(|meeting| meeting.map_or(reach, |meeting| contacts.reach_of(&meeting, reach))));
-    let stays = Stays { moved, reach: contacts.surface.stays.reach - reach };
+    let stays = Stays { moved, reach: f64::max(contacts.surface.stays.reach - reach, 0.0) };
     let farthest = contacts.farthest(reach);
     let surface = &contacts.surface;
     let normals = if has_normals { &surface.normals[..] } else { &[] };

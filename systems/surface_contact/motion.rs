@@ -225,7 +225,8 @@ pub(super) fn renew_shortlists<T: Scalar>(contacts: &mut SurfaceContacts, bodies
     if !is_known {
         neighbourhoods.list(triangles, points, lists);
         shortlists.resize(lists.points.len(), Shortlist::UNKNOWN);
-        stays.reach = 2.0 * reach;
+        // of what has no bound nothing is known in the next step
+        stays.reach = if reach.is_finite() { 2.0 * reach } else { 0.0 };
     }
     stays.moved = neighbourhoods.follow(places, may_move, |places| {
         shortlists.iter_mut().take(places.end).skip(places.start).for_each(|short| *short = Shortlist::UNKNOWN);
