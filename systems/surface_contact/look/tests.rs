@@ -1,5 +1,3 @@
-#![allow(clippy::unwrap_used)]
-
 use super::*;
 use crate::components::Clock;
 
@@ -30,7 +28,7 @@ fn what_is_told_is_counted_from_its_first_step_on() {
             let moved = |since: u32| (0..3).map(|axis| (place(step)[axis] - place(since)[axis]).powi(2)).sum::<f64>();
             if step == marked {
                 for mark in [&mut motion.lists, &mut motion.shortlists] {
-                    *mark = Mark { u: Some(Reals::F64(u)), moved: 0.0 };
+                    *mark = Mark { u: Some(Reals::F64(u.clone())), moved: 0.0 };
                 }
                 motion.gone = 0.0;
             } else if step > marked {
