@@ -129,3 +129,6 @@ impl<R: Fn(u32) -> f64, E: Fn(u32) -> f64> Glance<'_, R, E> {
         is_turned_away.then_some(facing)
     }
 }
+
+#[cfg(test)]
+mod tests;
