@@ -8,6 +8,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod dice;
+mod ended;
 mod generate;
 mod materials;
 mod memory;

@@ -5,6 +5,7 @@
 //! a snapshot. Other sums of forces, number types and backends agree but for rounding, where no threshold decides.
 
 use crate::dice::Temper;
+use crate::ended::{Run, near, same, whole_of};
 use crate::solvers::Solvers;
 use crate::{generate, number, sound};
 use fastrand::Rng;
@@ -22,7 +23,7 @@ const EVERYDAY: usize = 40;
 const STEPS: std::ops::Range<u64> = 8..120;
 const MANY_STEPS: std::ops::Range<u64> = 120..600;
 /// No more of any: steps may become many times smaller than the first.
-const MOST_STEPS: u64 = 1500;
+pub const MOST_STEPS: u64 = 1500;
 /// Changes that a run goes on from a snapshot after, and the step before which they are waited for.
 const MOST_CHANGES: usize = 2;
 const SOON: u64 = 100;
@@ -40,19 +41,6 @@ fn options(precision: Precision) -> Options {
 
 fn file(text: &str, sets: &[String]) -> Result<SceneFile, String> {
     SceneFile::from_text("made", text, Path::new("."), sets).map_err(|wrong| wrong.render(false))
-}
-
-/// How a run ended: its last state, or what was wrong.
-struct Run {
-    ended: Result<(), String>,
-    /// Steps taken, the length of the last (s), and when it ended (s).
-    steps: u64,
-    time_step: f64,
-    time: f64,
-    bytes: Vec<u8>,
-    displacements: Vec<DVec3>,
-    /// The largest share of its energy that came from nothing or went there, as the run itself tells.
-    imbalance: f64,
 }
 
 fn told(error: &Error) -> Result<String, String> {
@@ -180,47 +168,6 @@ fn finished(simulation: &mut Simulation, ended: Result<(), Error>) -> Result<Run
     Ok(Run { ended, steps, time_step, time, bytes, displacements, imbalance })
 }
 
-/// The largest distance between two sets of displacements, as a share of the largest displacement.
-fn apart(a: &[DVec3], b: &[DVec3]) -> f64 {
-    let largest = a.iter().chain(b).fold(1e-9_f64, |most, u| most.max(u.length()));
-    a.iter().zip(b).fold(0.0_f64, |most, (a, b)| most.max((*a - *b).length())) / largest
-}
-
-fn same(what: &str, a: &Run, b: &Run) -> Result<(), String> {
-    if a.ended != b.ended {
-        return Err(format!("{what}: {:?}, and without: {:?}", b.ended, a.ended));
-    }
-    if a.bytes != b.bytes {
-        let parts = match (Snapshot::from_bytes(&a.bytes), Snapshot::from_bytes(&b.bytes)) {
-            (Ok(a), Ok(b)) => a.differences(&b).join(", "),
-            _ => "no snapshots".into(),
-        };
-        return Err(format!("{what}: other bits in {parts}"));
-    }
-    Ok(())
-}
-
-fn near(what: &str, a: &Run, b: &Run, most: f64) -> Result<(), String> {
-    if a.ended.is_err() || b.ended.is_err() {
-        // near a limit rounding may decide
-        return Ok(());
-    }
-    if a.steps == MOST_STEPS && b.steps == MOST_STEPS && (a.time - b.time).abs() > a.time_step.max(b.time_step) {
-        // cut off at other times, since their steps were others
-        return Ok(());
-    }
-    // where rounding has decided when a step that follows became another, what differs is the error of the scheme
-    // itself: of motion that holds so much of the energy as a run says went non_finite, amplitudes go with its root
-    let alike = a.steps == b.steps && (a.time_step - b.time_step).abs() <= 1e-9 * a.time_step;
-    let most = if alike { most } else { most.max(0.05).max(a.imbalance.max(b.imbalance).sqrt()) };
-    let apart = apart(&a.displacements, &b.displacements);
-    if apart <= most {
-        return Ok(());
-    }
-    let steps = [a, b].map(|run| (run.steps, run.time_step, run.time));
-    Err(format!("{what}: displacements differ by {apart:.2e}; steps, the last ones' lengths, ends: {steps:?}"))
-}
-
 /// What became of a scene.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 enum Ending {
@@ -337,10 +284,6 @@ fn attempt(seed: u64, kind: Kind, gpu: bool) -> Result<Ending, String> {
         }
     }
     Ok(if of_precision.iter().all(|run| run.ended.is_ok()) { Ending::Finished } else { Ending::BrokeDown })
-}
-
-fn whole_of(run: &Run) -> Run {
-    Run { ended: run.ended.clone(), bytes: run.bytes.clone(), displacements: run.displacements.clone(), ..*run }
 }
 
 #[test]
